@@ -9,6 +9,7 @@
 
 #include "client/report/cells.h"
 #include "client/report/pair_groups.h"
+#include "common/io/log/log_series.h"
 #include "common/messages/length_text.h"
 
 namespace mortise {
@@ -59,48 +60,26 @@ std::string time_axis(double seconds, double height) {
   return svg;
 }
 
-// One clash from an event to the next, or to its end.
-struct Piece {
-  double from_s = 0.0, to_s = 0.0;
-  double least_mm = 0.0, most_mm = 0.0;  // of the overlap; most: NaN where it is not bounded
-  double fake_below_mm = 0.0, real_above_mm = 0.0;
-  std::string klass;
-};
-
-// By clash, in the order of time.
-std::map<std::uint64_t, std::vector<Piece>> pieces_of(const Table& events, double seconds) {
-  std::map<std::uint64_t, std::vector<Piece>> all;
+DepthSeries pieces_of(const Table& events, double seconds) {
+  DepthSeries all;
   for (const auto& row : events.rows) {
     const Cells event(events, row);
-    const std::string kind = event.raw("kind");
-    std::vector<Piece>& pieces = all[event["clash"].get<std::uint64_t>()];
-    const double at_s = event.number("time_s");
-    if (kind == "review") continue;
-    if (!pieces.empty()) pieces.back().to_s = at_s;
-    if (kind == "end") continue;
-    pieces.push_back({at_s, seconds, std::max(0.0, event.number("overlap_lo_mm")),
-                      event.number("overlap_hi_mm"), event.number("fake_below_mm"),
-                      event.number("real_above_mm"), event.text("class")});
+    add_event(all, event["clash"].get<std::uint64_t>(), event.raw("kind"),
+              {event.number("time_s"), seconds, event.number("overlap_lo_mm"),
+               event.number("overlap_hi_mm"), event.number("fake_below_mm"),
+               event.number("real_above_mm"), event.text("class")});
   }
   return all;
 }
 
-double largest(const std::vector<Piece>& pieces) {
-  double mm = 1e-6;
-  for (const Piece& piece : pieces)
-    for (const double x : {piece.least_mm, piece.fake_below_mm, piece.real_above_mm})
-      if (std::isfinite(x)) mm = std::max(mm, x);
-  return mm;
-}
-
 // What is certain of the depth filled, what it is at most as a line, both thresholds dashed.
-std::string drawn(const std::vector<Piece>& pieces, double bottom, double seconds) {
-  const double scale = kDeepest / largest(pieces);
+std::string drawn(const std::vector<DepthPiece>& pieces, double bottom, double seconds) {
+  const double scale = kDeepest / largest_mm(pieces);
   const auto y = [&](double mm) { return bottom - std::min(kDeepest, scale * mm); };
   std::string svg, fake, real;
-  for (const Piece& piece : pieces) {
-    const double from = x_of(piece.from_s, seconds);
-    const double to = std::max(from + 2.0, x_of(piece.to_s, seconds));
+  for (const DepthPiece& piece : pieces) {
+    const double from = x_of(piece.from, seconds);
+    const double to = std::max(from + 2.0, x_of(piece.to, seconds));
     svg += fmt::format(
         "<g class=\"{}\"><rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" "
         "fill=\"currentColor\" opacity=\".6\"/>",
@@ -124,7 +103,7 @@ std::string drawn(const std::vector<Piece>& pieces, double bottom, double second
   return svg;
 }
 
-std::string depth_row(const Cells& clash, const std::vector<Piece>& pieces, double top,
+std::string depth_row(const Cells& clash, const std::vector<DepthPiece>& pieces, double top,
                       double seconds) {
   const double bottom = top + kRow - 8.0;
   const std::string klass = clash.text("class");
@@ -136,28 +115,18 @@ std::string depth_row(const Cells& clash, const std::vector<Piece>& pieces, doub
       klass, top + 14.0, static_cast<char>(klass.empty() ? '?' : klass[0] - 32),
       clash.text("clash"), escaped(shortened(clash.raw("part_a"))), top + 27.0,
       escaped("× " + shortened(clash.raw("part_b"))), kLeft - 6.0, top + 12.0,
-      length_text(largest(pieces)), kLeft, bottom, kWidth);
+      length_text(largest_mm(pieces)), kLeft, bottom, kWidth);
   return svg + drawn(pieces, bottom, seconds);
 }
 
-struct Column {
-  double from_s = 0.0, to_s = 0.0, sum_us = 0.0, ticks = 0.0, max_us = 0.0;
-};
-
-// So many neighbours together that there are not too many.
-std::vector<Column> columns_of(const Table& times) {
-  const std::size_t together = (times.rows.size() + kMostColumns - 1) / kMostColumns;
-  std::vector<Column> columns;
-  for (std::size_t i = 0; i < times.rows.size(); ++i) {
-    const Cells row(times, times.rows[i]);
-    if (i % together == 0) columns.push_back({row.number("begin_s"), 0.0, 0.0, 0.0, 0.0});
-    Column& column = columns.back();
-    column.to_s = row.number("end_s");
-    column.ticks += row.number("ticks");
-    column.sum_us += row.number("ticks") * row.number("mean_us");
-    column.max_us = std::max(column.max_us, row.number("max_us"));
+std::vector<TimeColumn> columns_of(const Table& times) {
+  std::vector<TimeColumn> columns;
+  for (const auto& cells : times.rows) {
+    const Cells row(times, cells);
+    columns.push_back({row.number("begin_s"), row.number("end_s"), row.number("ticks"),
+                       row.number("ticks") * row.number("mean_us"), row.number("max_us")});
   }
-  return columns;
+  return joined_columns(columns, kMostColumns);
 }
 
 std::string time_text(double us) {
@@ -206,11 +175,11 @@ std::string tick_time_section(const SessionReport& report) {
   const Table& times = table_named(report.tables, "tick_times");
   const double seconds = in_session(report, "end_s");
   if (times.rows.empty() || !(seconds > 0.0)) return "";
-  const std::vector<Column> columns = columns_of(times);
+  const std::vector<TimeColumn> columns = columns_of(times);
   const double period_us = 1e6 / std::max(1e-3, in_session(report, "tick_rate_hz"));
   double least = 1e3, most = period_us;
-  for (const Column& column : columns) {
-    least = std::min(least, column.sum_us / column.ticks);
+  for (const TimeColumn& column : columns) {
+    least = std::min(least, column.mean_us());
     most = std::max(most, column.max_us);
   }
   const double low = std::floor(std::log10(std::max(1e-3, least)));
@@ -234,10 +203,10 @@ std::string tick_time_section(const SessionReport& report) {
         "x=\"{3:.1f}\" y=\"{4:.1f}\" text-anchor=\"end\">{5}</text>\n",
         kLeft, y(std::pow(10.0, power)), kWidth, kLeft - 6.0, y(std::pow(10.0, power)) + 4.0,
         time_text(std::pow(10.0, power)));
-  for (const Column& column : columns) {
-    const double from = x_of(column.from_s, seconds);
-    const double to = std::max(from + 1.5, x_of(column.to_s, seconds));
-    const double mean = y(column.sum_us / column.ticks);
+  for (const TimeColumn& column : columns) {
+    const double from = x_of(column.from, seconds);
+    const double to = std::max(from + 1.5, x_of(column.to, seconds));
+    const double mean = y(column.mean_us());
     html += fmt::format(
         "<rect x=\"{0:.1f}\" y=\"{1:.1f}\" width=\"{2:.1f}\" height=\"{3:.1f}\" "
         "fill=\"currentColor\" opacity=\".4\"/><path d=\"M{0:.1f} {4:.1f}h{2:.1f}\" "

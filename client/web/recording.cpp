@@ -129,6 +129,7 @@ Result<Recording> read_recording(const std::filesystem::path& file) {
   recording.tick_rate_hz = world.tick_rate_hz;
   recording.first_tick = recording.last_tick = world.tick;
   recording.notes = log->notes;
+  recording.tick_times = log->times;
   recording.agreements.push_back(agreement_of(world, {}));
   for (const auto& [hash, mesh] : log->meshes) recording.meshes[hash] = mesh_of(mesh);
   Recorder recorder(recording, world);

@@ -8,6 +8,7 @@
 
 #include "client/web/json_out.h"
 #include "common/base/result.h"
+#include "common/io/log/log_json.h"
 
 namespace mortise::web {
 
@@ -38,12 +39,13 @@ struct Recording {
   std::string session;
   double tick_rate_hz = 60.0;
   std::uint64_t first_tick = 0, last_tick = 0;
-  std::vector<PartList> part_lists;           ///< by tick, the first from before all
-  std::map<PartId, std::vector<Step>> steps;  ///< by tick
-  std::vector<ClashEvent> events;             ///< by tick
-  std::vector<Agreement> agreements;          ///< by tick, the first from before all
-  std::map<std::string, SharedBytes> meshes;  ///< by hash, as pages read them
-  std::vector<std::string> notes;             ///< what is missing, in words
+  std::vector<PartList> part_lists;             ///< by tick, the first from before all
+  std::map<PartId, std::vector<Step>> steps;    ///< by tick
+  std::vector<ClashEvent> events;               ///< by tick
+  std::vector<Agreement> agreements;            ///< by tick, the first from before all
+  std::map<std::string, SharedBytes> meshes;    ///< by hash, as pages read them
+  std::vector<log_json::TickTimes> tick_times;  ///< by tick; empty: not measured
+  std::vector<std::string> notes;               ///< what is missing, in words
 
   /// The scene at the end of a tick.
   Scene scene_at(std::uint64_t tick) const;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "client/web/recording_timeline.h"
 #include "common/messages/names.h"
 
 namespace mortise::web {
@@ -15,7 +16,7 @@ constexpr double kTellEvery_s = 0.25;
 
 void ReplayFeed::enter(Viewer& viewer) {
   Cursor& cursor = cursors_[&viewer];
-  viewer.say(text_of(timeline()));
+  viewer.say(text_of(timeline_of(recording_)));
   show(viewer, cursor, recording_.first_tick);
 }
 
@@ -158,27 +159,6 @@ MeshAnswer ReplayFeed::mesh(const std::string& hash) const {
   const auto found = recording_.meshes.find(hash);
   if (found == recording_.meshes.end()) return {};
   return {MeshAnswer::State::kHere, found->second};
-}
-
-Json ReplayFeed::timeline() const {
-  Json json{{"type", "timeline"},
-            {"first_tick", recording_.first_tick},
-            {"last_tick", recording_.last_tick},
-            {"tick_rate_hz", recording_.tick_rate_hz},
-            {"marks", Json::array()},
-            {"notes", recording_.notes}};
-  for (const ClashEvent& event : recording_.events) {
-    if (event.kind != ClashEvent::Kind::kBegin && event.kind != ClashEvent::Kind::kEnd) continue;
-    json["marks"].push_back(
-        {{"tick", event.tick},
-         {"kind", name_of(event.kind)},
-         {"clash", event.clash.value},
-         {"class", name_of(event.kind == ClashEvent::Kind::kEnd ? event.worst_class
-                                                                : event.verdict.collision_class)},
-         {"a", event.part_a.value},
-         {"b", event.part_b.value}});
-  }
-  return json;
 }
 
 Json ReplayFeed::statistics() const {

@@ -42,7 +42,6 @@ class ReplayFeed final : public Feed {
   void tell_decisions(Viewer& viewer, std::uint64_t from, std::uint64_t to) const;
   void tell(Viewer& viewer, Cursor& cursor) const;
   SharedBytes frame_at(const Cursor& cursor, const std::vector<PartId>& parts) const;
-  Json timeline() const;
 
   Recording recording_;
   std::map<Viewer*, Cursor, std::less<>> cursors_;

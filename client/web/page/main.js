@@ -60,7 +60,7 @@ makeReport(desk);
 makeSectionBar(section, () => session.emit('clashes', undefined));
 const toolbar = makeToolbar(desk);
 const hand = makeHand(desk, arriving);
-const timeline = makeTimeline(session, desk.send);
+const timeline = makeTimeline(desk);
 const join = makeJoin(session, desk.send);
 const tools = [makeAlign(desk), makeMeasure(desk)];
 makePartDrag(desk);

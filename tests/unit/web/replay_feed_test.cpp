@@ -174,5 +174,26 @@ TEST(ReplayOfNoLog, IsRefusedInOneLine) {
   EXPECT_EQ(none.error().text.find('\n'), std::string::npos);
 }
 
+TEST_F(ReplayOfASession, TheTimelineTellsDepthsAndTickTimes) {
+  ReplayFeed feed(recording);
+  Page page(Role::kObserver);
+  feed.enter(page);
+  page.take(feed);
+  const Json line = page.last("timeline");
+  ASSERT_FALSE(line["depths"].empty());
+  const Json& depth = line["depths"][0];
+  double at = 0.0, deepest = 0.0;
+  for (const Json& piece : depth["pieces"]) {
+    EXPECT_GE(piece[0], at) << "in the order of time";
+    at = piece[1];
+    EXPECT_EQ(truth.open.at(piece[0].get<std::uint64_t>()), 1u);
+    deepest = std::max(deepest, piece[3].get<double>());
+  }
+  EXPECT_EQ(truth.open.at(static_cast<std::uint64_t>(at)), 0u) << "it ends where the clash does";
+  EXPECT_GE(depth["top"], deepest);
+  ASSERT_FALSE(line["tick_times"].empty());
+  for (const Json& column : line["tick_times"]) EXPECT_GE(column[3], column[2]) << column;
+}
+
 }  // namespace
 }  // namespace mortise::web

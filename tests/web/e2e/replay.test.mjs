@@ -6,7 +6,7 @@ import { join } from 'node:path';
 import { before, test } from 'node:test';
 import { openPage } from '../support/browser.mjs';
 import { BrowserSession } from '../support/browser_session.mjs';
-import { fitsScreensAndPaper } from '../support/looks.mjs';
+import { cutOff, fitsScreensAndPaper, paleTexts } from '../support/looks.mjs';
 import { PATIENCE, choose, drawn, position, until, whenListed } from '../support/people.mjs';
 
 const session = new BrowserSession();
@@ -65,6 +65,26 @@ test('it plays and pauses', async () => {
   await page.locator('#timeline button[aria-label="Play"]').waitFor(PATIENCE);
   await page.getByRole('button', { name: 'Clash ▸' }).click();
   await whenListed(page, 'clashes', 'real');
+});
+
+test('depth and tick times are plotted on the axis of the timeline, are pressed as it is, and are told in words', async () => {
+  await seek(0);
+  const depths = page.getByRole('img', { name: /^Depth of #1 wall × cube: at least .* at .* s/ });
+  await depths.waitFor(PATIENCE);
+  await page.getByRole('img', { name: /^Tick times: / }).waitFor(PATIENCE);
+  const drawing = depths.locator('svg rect.is-real').last();
+  const [deep, all, track] = await Promise.all([drawing, page.locator('#timeline .plots'), page.locator('#timeline input')].map((box) => box.boundingBox()));
+  assert.ok(Math.abs(all.x - track.x - 8) < 1.5 && Math.abs(all.width - track.width + 16) < 3, 'one axis');
+  await page.mouse.click(deep.x + deep.width / 2, deep.y + deep.height - 2);
+  await whenListed(page, 'clashes', 'real');
+  await page.waitForFunction(() => /s; #1 real, at least .* deep$/.test(document.querySelector('#timeline input')?.getAttribute('aria-valuetext') ?? ''), undefined, PATIENCE);
+  const [now, thumb] = [await page.locator('#timeline .now').boundingBox(), (await tick())];
+  assert.ok(Math.abs(now.x + 1 - (deep.x + deep.width / 2)) < 8, `${now.x} at tick ${thumb}`);
+  assert.deepEqual([...await paleTexts(page), ...await cutOff(page)], []);
+  await page.getByRole('button', { name: 'Plots' }).press('Enter');
+  assert.ok(await depths.isHidden());
+  await page.getByRole('button', { name: 'Plots' }).press('Enter');
+  assert.ok(await depths.isVisible());
 });
 
 test('at 390 pixels the timeline has a row of its own, and what filters says which', async () => {

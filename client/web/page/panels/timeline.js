@@ -1,11 +1,15 @@
-// Replay: play, pause, go anywhere, and where clashes begin.
+// Replay: play, pause, go anywhere, where clashes begin, and what the log was like over time.
 import { plain, rankOf } from '../session/words.js';
-import { byId, el, setText } from './dom.js';
+import { byId, el, setPressed, setText } from './dom.js';
 import { classMark, icon } from './icons.js';
+import { makeLogPlots } from './log_plots.js';
 import { say } from './said.js';
 
-/** @param {import('../session/session.js').Session} session @param {(message: object) => boolean} send */
-export function makeTimeline(session, send) {
+/** Below this the plots take too much of the view, until they are asked for. */
+const ROOM_FOR_PLOTS = '(min-width: 901px) and (min-height: 601px)';
+
+/** @param {import('../desk.js').Desk} desk */
+export function makeTimeline({ session, choice, send }) {
   const box = byId('timeline');
   const play = el('button', { type: 'button', class: 'small', onclick: () => toggle() });
   const slider = el('input', { type: 'range', step: '1', 'aria-label': 'Time' });
@@ -15,12 +19,21 @@ export function makeTimeline(session, send) {
   speed.value = '1';
   const before = el('button', { type: 'button', onclick: () => jump(-1) }, '◂ Clash');
   const after = el('button', { type: 'button', onclick: () => jump(1) }, 'Clash ▸');
-  box.append(play, before, after, el('div', { class: 'track' }, marks, slider), time, speed);
+  const plots = makeLogPlots(session, choice);
+  plots.box.hidden = !matchMedia(ROOM_FOR_PLOTS).matches;
+  const withPlots = el('button', { type: 'button', onclick: () => showPlots(plots.box.hidden) }, 'Plots');
+  box.append(play, before, after, el('div', { class: 'track' }, plots.box, marks, slider), time, speed, withPlots);
   const tell = (/** @type {string} */ what, keys = {}) => send({ type: 'replay', do: what, ...keys });
   let seeking = false;
 
   function toggle() {
     if (session.timeline) tell(session.replay?.playing ? 'pause' : 'play');
+  }
+
+  /** @param {boolean} shown */
+  function showPlots(shown) {
+    plots.box.hidden = !shown;
+    setPressed(withPlots, shown);
   }
 
   /** To the beginning of the next or last clash. @param {number} way */
@@ -37,7 +50,8 @@ export function makeTimeline(session, send) {
     if (!seeking) slider.value = `${tick}`;
     const text = `${((tick - first_tick) / tick_rate_hz).toFixed(2)} s of ${((last_tick - first_tick) / tick_rate_hz).toFixed(1)} s`;
     setText(time, text);
-    slider.setAttribute('aria-valuetext', text);
+    slider.setAttribute('aria-valuetext', text + plots.said(tick));
+    plots.at(tick);
     const playing = session.replay?.playing === true;
     if (play.dataset.playing !== String(playing)) {
       play.dataset.playing = String(playing);
@@ -61,17 +75,34 @@ export function makeTimeline(session, send) {
       drawn.append(title);
       return drawn;
     }));
+    plots.draw();
+    showPlots(!plots.box.hidden);
     showTime();
   });
   session.on('replay', showTime);
-  slider.oninput = () => {
+  const begin = () => {
     seeking = true;
     showTime();
   };
-  slider.onchange = () => {
+  const end = () => {
+    if (seeking) tell('seek', { tick: Number(slider.value) });
     seeking = false;
-    tell('seek', { tick: Number(slider.value) });
   };
+  slider.oninput = begin;
+  slider.onchange = end;
+  // The plots are pressed and dragged as the slider is; keys are the slider's.
+  const follow = (/** @type {PointerEvent} */ { clientX }) => {
+    slider.value = `${plots.tickAt(clientX)}`;
+    begin();
+  };
+  plots.box.onpointerdown = (event) => {
+    plots.box.setPointerCapture(event.pointerId);
+    follow(event);
+  };
+  plots.box.onpointermove = (event) => seeking && follow(event);
+  plots.box.onpointerup = plots.box.onpointercancel = end;
+  session.on('scene', () => session.timeline && plots.draw()); // names of parts
+  choice.on('clash', () => session.timeline && showTime());
   speed.onchange = () => tell('speed', { speed: Number(speed.value) });
   return { toggle };
 }
