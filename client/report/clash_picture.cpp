@@ -6,10 +6,12 @@
 
 #include "client/picture/picture.h"
 #include "client/report/moments.h"
-#include "common/io/log/log_chain.h"
 
 namespace mortise {
 namespace {
+
+// A kept log has a kilobyte or two for each: 100 MB.
+constexpr std::size_t kMostKeptTicks = 50'000;
 
 // An end has no region any more, and a review nothing new of one.
 bool is_judged(const ClashEvent& event) {
@@ -44,10 +46,16 @@ Result<std::string> clash_picture(const SessionLog& log, const ClashMoment& want
   return drawn;
 }
 
-Result<std::string> clash_picture(const std::filesystem::path& log, const ClashMoment& wanted) {
-  const auto read = read_session(log);
-  if (!read) return read.error();
-  return clash_picture(*read, wanted);
+Result<std::string> ClashPictures::draw(const ClashMoment& wanted) {
+  const bool has_it = log_ && !log_->ticks.empty() && log_->ticks.back().tick >= wanted.until_tick;
+  if (!has_it && !(log_ && log_->complete)) {
+    auto read = read_();
+    if (!read) return read.error();
+    log_ = std::move(*read);
+  }
+  Result<std::string> drawn = clash_picture(*log_, wanted);
+  if (log_->ticks.size() > kMostKeptTicks) log_.reset();
+  return drawn;
 }
 
 }  // namespace mortise

@@ -7,6 +7,7 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <thread>
 
 #include "client/report/clash_picture.h"
@@ -107,10 +108,10 @@ Result<std::string> scenario_of(const std::string& log) try {
   return fail(Code::kRuntime, std::string("the session cannot be saved: ") + e.what());
 }
 
-Result<std::string> picture_of(const std::string& log, const WantedPicture& wanted) try {
+Result<std::string> picture_of(ClashPictures& pictures, const WantedPicture& wanted) try {
   ClashMoment moment{ClashId{wanted.clash}};
   if (wanted.until_tick) moment.until_tick = *wanted.until_tick;
-  return clash_picture(log, moment);
+  return pictures.draw(moment);
 } catch (const std::exception& e) {  // memory
   return fail(Code::kRuntime, std::string("the clash cannot be drawn: ") + e.what());
 }
@@ -126,9 +127,12 @@ int serve(const WebOptions& options, Feed& feed, StopSignal& stop_signal) {
       if (is_written) await_writing(log);
       return bytes_of(log);
     };
-    gateway_options.picture = [log, is_written](const WantedPicture& wanted) {
+    const auto pictures = std::make_shared<ClashPictures>([log, is_written] {
       if (is_written) await_writing(log);
-      return picture_of(log, wanted);
+      return read_session(log);
+    });
+    gateway_options.picture = [pictures](const WantedPicture& wanted) {
+      return picture_of(*pictures, wanted);
     };
     gateway_options.scenario = [log, is_written] {
       if (is_written) await_writing(log);

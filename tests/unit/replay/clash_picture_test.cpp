@@ -59,5 +59,27 @@ TEST_F(ClashPicture, HasNoneOfAClashThatIsNotThereYetOrNotAtAll) {
   EXPECT_NE(none.error().text.find("no clash 4711"), std::string::npos) << none.error().text;
 }
 
+TEST_F(ClashPicture, ALogIsReadAgainOnlyForAMomentBehindWhatWasRead) {
+  const ClashEvent& first = events_.front();
+  int reads = 0;
+  log_.complete = false;  // as while its server writes it
+  ClashPictures pictures([&] {
+    ++reads;
+    return log_;
+  });
+  const auto begun = pictures.draw({first.clash, first.tick});
+  ASSERT_TRUE(begun) << begun.error().text;
+  EXPECT_EQ(*pictures.draw({first.clash, first.tick}), *begun);
+  EXPECT_FALSE(pictures.draw({first.clash, first.tick - 1}));
+  EXPECT_EQ(reads, 1);
+  EXPECT_TRUE(pictures.draw({first.clash, log_.ticks.back().tick + 1}));
+  EXPECT_TRUE(pictures.draw({first.clash}));
+  EXPECT_EQ(reads, 3);
+  log_.complete = true;
+  EXPECT_TRUE(pictures.draw({first.clash}));
+  EXPECT_TRUE(pictures.draw({first.clash}));
+  EXPECT_EQ(reads, 4) << "it has ended: nothing more comes";
+}
+
 }  // namespace
 }  // namespace mortise
