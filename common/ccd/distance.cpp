@@ -56,11 +56,12 @@ class Search {
     seeded_ = nearer(x, y, id_a, id_b);
   }
 
-  // Depth first, of the children the nearest first: the first pops go straight down to the most
-  // promising leaves, whose distance then prunes.
+  // Depth first, of the children the nearest first: the first pops go straight
+  // down to the most promising leaves, whose distance then prunes. Where only a
+  // crossing is wanted, those first that overlap most.
   const Nearest& run() {
     const BoxKernels& kernels = best_kernels().box;
-    const BoxFrame& frame = motion_.frame(0.0);
+    const bool overlap_first = enough_mm_ > 0.0;
     std::vector<Item>& stack = scratch_.heap;
     stack.clear();
     stack.push_back(root_pair(a_, b_));
@@ -77,8 +78,12 @@ class Search {
       if (seeded_ && opened == kOpenedBeforeSeedPlane && by_plane(1, kMostSeedLeaves)) break;
       if (opened == kOpenedBeforePlane && by_plane(kPlaneSteps, kMostLeaves)) break;
       const std::size_t begin = stack.size();
-      open(item, a_, b_, frame, kernels.lower_a, kernels.lower_b, [&](Item& child, double lower) {
-        child.t = std::max(item.t, lower);
+      alignas(32) float value[Bvh::kWidth];
+      const bool opened_a =
+          open_still(item, a_, b_, motion_, overlap_first ? kernels.apart_a : kernels.lower_a,
+                     overlap_first ? kernels.apart_b : kernels.lower_b, value);
+      each_child(item, a_, b_, opened_a, value, [&](Item& child, double lower) {
+        child.t = overlap_first ? lower : std::max(item.t, lower);
         if (child.t > reach_mm()) return;
         std::size_t at = stack.size();
         stack.push_back(child);

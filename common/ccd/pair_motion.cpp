@@ -46,6 +46,14 @@ struct SeenFromBoxes {
   }
 };
 
+void set_axes(BoxFrame& f, const Mat3& R) {
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) {
+      f.r[i][j] = static_cast<float>(R(i, j));
+      f.abs_r[i][j] = std::fabs(f.r[i][j]);
+    }
+}
+
 void set_turn(BoxTurn& turn, const TurnTerms& terms, const Mat3& R, const Vec3& w, const Vec3& arm,
               double speed) {
   turn.turns = terms.turns;
@@ -198,11 +206,7 @@ const BoxFrame& PairMotion::frame(double target_mm, const BoxAxes& boxes_a,
   frame_t_ = of_parts ? state_.t : -1.0;
   frame_target_ = target_mm;
   const SeenFromBoxes s(state_, boxes_a, boxes_b);
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j) {
-      f.r[i][j] = static_cast<float>(s.R(i, j));
-      f.abs_r[i][j] = std::fabs(f.r[i][j]);
-    }
+  set_axes(f, s.R);
   copy(s.p, f.p);
   copy(s.v, f.v);
   copy(s.R.transpose() * s.v, f.v_A);
@@ -223,6 +227,25 @@ const BoxFrame& PairMotion::frame(double target_mm, const BoxAxes& boxes_a,
       speed_rounding_mm_ + kFloatRounding * (s.v.norm() + speed_a * wide_a + speed_b * wide_b));
   f.bend_allowance =
       rounded_up(kFloatRounding * (speed_a * speed_a * wide_a + speed_b * speed_b * wide_b));
+  return f;
+}
+
+const BoxFrame& PairMotion::still_frame(const BoxAxes& boxes_a, const BoxAxes& boxes_b) {
+  BoxFrame& f = still_frame_;
+  Mat3 R = state_.R;
+  Vec3 p = state_.p - boxes_b.from_origin;
+  if (boxes_a.axes != nullptr) {
+    p += R * boxes_a.from_origin;
+    R = R * boxes_a.axes->transpose();
+  }
+  if (boxes_b.axes != nullptr) {
+    p = *boxes_b.axes * p;
+    R = *boxes_b.axes * R;
+  }
+  set_axes(f, R);
+  copy(p, f.p);
+  f.gap_allowance = rounded_up(rounding_mm_ +
+                               kFloatRounding * (boxes_a.radius_mm + boxes_b.radius_mm + p.norm()));
   return f;
 }
 

@@ -63,6 +63,8 @@ class PairMotion {
   const BoxFrame& frame(double target_mm);
   /// The same for boxes in axes of their own.
   const BoxFrame& frame(double target_mm, const BoxAxes& a, const BoxAxes& b);
+  /// As far as kernels read it that take places alone.
+  const BoxFrame& still_frame(const BoxAxes& a, const BoxAxes& b);
   /// What the leaf kernel needs at state.t. Gaps are measured from taken_mm + rounding.
   const LeafFrame& leaf_frame(double taken_mm, double suspect_mm);
 
@@ -90,6 +92,7 @@ class PairMotion {
   PairState state_;
   BoxFrame frame_;  // the terms of a body that does not turn are never read
   double frame_t_ = -1.0, frame_target_ = 0.0;  // of the frame in axes of the parts
+  BoxFrame still_frame_;
   LeafFrame leaf_{};
   double leaf_t_ = -1.0;
 };

@@ -49,12 +49,19 @@ using AdvanceB = void (*)(const BoxFrame& frame, const OneBox& a, const EightBox
 /// lower[k]: lower bound of the distance, mm; only r, abs_r, p and gap_allowance are read.
 using LowerA = AdvanceA;
 using LowerB = AdvanceB;
+/// apart[k]: lower bound of the distance along the axis that shows the largest,
+/// mm; below zero by how deep the boxes overlap where they do. Reads what the
+/// bounds above read.
+using ApartA = AdvanceA;
+using ApartB = AdvanceB;
 
 struct BoxKernels {
   AdvanceA advance_a;
   AdvanceB advance_b;
   LowerA lower_a;
   LowerB lower_b;
+  ApartA apart_a;
+  ApartB apart_b;
 };
 
 }  // namespace mortise::ccd

@@ -255,23 +255,69 @@ inline void advance_any(const BoxFrame& f, const Boxes& a, const Boxes& b, float
   }
 }
 
-// Distance of the boxes in either frame of axes, whichever is larger.
-inline void lower_bound(const BoxFrame& f, const Boxes& a, const Boxes& b, float* out) {
-  const Lanes zero = all(0.0F);
-  Lanes d[3], square_b = zero, square_a = zero;
+// Gaps of the boxes along the axes of B and of A; below zero where they
+// overlap.
+struct Gaps {
+  Lanes d[3];  // from centre to centre
+  Lanes b[3], a[3];
+};
+
+inline Gaps gaps_of(const BoxFrame& f, const Boxes& a, const Boxes& b) {
+  Gaps gaps;
+  Lanes(&d)[3] = gaps.d;
   for (int i = 0; i < 3; ++i) {
     d[i] = b.center[i] - (dot(f.r[i], a.center) + all(f.p[i]));
-    const Lanes gap = larger(magnitude(d[i]) - b.half[i] - dot(f.abs_r[i], a.half), zero);
-    square_b += gap * gap;
+    gaps.b[i] = magnitude(d[i]) - b.half[i] - dot(f.abs_r[i], a.half);
   }
   for (int k = 0; k < 3; ++k) {
     const Lanes along = all(f.r[0][k]) * d[0] + all(f.r[1][k]) * d[1] + all(f.r[2][k]) * d[2];
     const Lanes extent_b = all(f.abs_r[0][k]) * b.half[0] + all(f.abs_r[1][k]) * b.half[1] +
                            all(f.abs_r[2][k]) * b.half[2];
-    const Lanes gap = larger(magnitude(along) - a.half[k] - extent_b, zero);
-    square_a += gap * gap;
+    gaps.a[k] = magnitude(along) - a.half[k] - extent_b;
   }
-  store(root(larger(square_a, square_b)) * all(kShorter) - all(f.gap_allowance), out);
+  return gaps;
+}
+
+// The largest gap along an axis across one of B and one of A; such an axis is
+// no longer than 1, so that the gap along it is no more than the distance.
+inline Lanes across_both(const BoxFrame& f, const Boxes& a, const Boxes& b, const Lanes* d) {
+  Lanes most = all(-1e30F);
+  for (int i = 0; i < 3; ++i) {
+    const int i1 = (i + 1) % 3, i2 = (i + 2) % 3;
+    for (int j = 0; j < 3; ++j) {
+      const int j1 = (j + 1) % 3, j2 = (j + 2) % 3;
+      const Lanes along = d[i2] * all(f.r[i1][j]) - d[i1] * all(f.r[i2][j]);
+      const Lanes extent = b.half[i1] * all(f.abs_r[i2][j]) + b.half[i2] * all(f.abs_r[i1][j]) +
+                           a.half[j1] * all(f.abs_r[i][j2]) + a.half[j2] * all(f.abs_r[i][j1]);
+      most = larger(most, magnitude(along) - extent);
+    }
+  }
+  return most;
+}
+
+// Distance of the boxes in either frame of axes, or across both, whichever is
+// larger.
+inline void lower_bound(const BoxFrame& f, const Boxes& a, const Boxes& b, float* out) {
+  const Lanes zero = all(0.0F);
+  const Gaps gaps = gaps_of(f, a, b);
+  Lanes square_b = zero, square_a = zero;
+  for (int k = 0; k < 3; ++k) {
+    const Lanes gap_b = larger(gaps.b[k], zero), gap_a = larger(gaps.a[k], zero);
+    square_b += gap_b * gap_b;
+    square_a += gap_a * gap_a;
+  }
+  store(larger(root(larger(square_a, square_b)), across_both(f, a, b, gaps.d)) * all(kShorter) -
+            all(f.gap_allowance),
+        out);
+}
+
+inline void apart(const BoxFrame& f, const Boxes& a, const Boxes& b, float* out) {
+  const Gaps gaps = gaps_of(f, a, b);
+  Lanes most = larger(gaps.b[0], gaps.a[0]);
+  for (int k = 1; k < 3; ++k) most = larger(most, larger(gaps.b[k], gaps.a[k]));
+  const Lanes across = across_both(f, a, b, gaps.d);
+  most = across > all(0.0F) ? larger(most, across) : most;
+  store(most * all(kShorter) - all(f.gap_allowance), out);
 }
 
 void advance_a(const BoxFrame& f, const EightBoxes& a, const OneBox& b, float* out) {
@@ -286,7 +332,13 @@ void lower_a(const BoxFrame& f, const EightBoxes& a, const OneBox& b, float* out
 void lower_b(const BoxFrame& f, const OneBox& a, const EightBoxes& b, float* out) {
   lower_bound(f, boxes_of(a), boxes_of(b), out);
 }
+void apart_a(const BoxFrame& f, const EightBoxes& a, const OneBox& b, float* out) {
+  apart(f, boxes_of(a), boxes_of(b), out);
+}
+void apart_b(const BoxFrame& f, const OneBox& a, const EightBoxes& b, float* out) {
+  apart(f, boxes_of(a), boxes_of(b), out);
+}
 
-constexpr BoxKernels kKernels{advance_a, advance_b, lower_a, lower_b};
+constexpr BoxKernels kKernels{advance_a, advance_b, lower_a, lower_b, apart_a, apart_b};
 
 }  // namespace boxes

@@ -2,6 +2,7 @@
 // between hulls.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -118,6 +119,65 @@ TEST(DistanceTwin, IsTheLeastOfAllPairsInManyShapes) {
     }
   EXPECT_GT(apart, 100);
   EXPECT_GT(crossing, 5);
+}
+
+// Overlap first and nearest first look at pairs in another order, by another bound.
+TEST(SurfacesCross, AgreesWithTheDistance) {
+  const test::FloatTraps traps;
+  std::mt19937_64 random(67);
+  CcdScratch scratch;
+  std::vector<Pair> all = pairs();
+  all.push_back({"long bars", solid(box_mesh({8, 0.1, 0.2})), solid(box_mesh({0.2, 9, 0.1})), 0.5});
+  all.push_back({"plate in a tube", solid(box_mesh({1.9, 1.9, 0.05})),
+                 solid(tube_mesh(1.2, 1.4, 48, -1, 1)), 0.5});
+  int apart = 0, crossing = 0;
+  for (const Pair& pair : all)
+    for (int i = 0; i < test::effort(60); ++i) {
+      const Pose X = random_pose(random, pair.reach_mm, pair.reach_mm < 0.1 ? 0.02 : kPi);
+      const double distance_mm = distance(*pair.a, X, *pair.b, {}, scratch).distance_mm;
+      const bool cross = surfaces_cross(*pair.a, X, *pair.b, {}, scratch);
+      ASSERT_EQ(cross, distance_mm == 0.0) << pair.name << " " << i;
+      EXPECT_EQ(surfaces_cross(*pair.b, {}, *pair.a, X, scratch), cross) << pair.name << " " << i;
+      ++(cross ? crossing : apart);
+    }
+  EXPECT_GT(apart, 100);
+  EXPECT_GT(crossing, 100);
+}
+
+// Long thin boxes at any angle, against every pair of their triangles.
+TEST(BoxKernels, BoundsAreNoMoreThanTheDistanceOfTheBoxes) {
+  std::mt19937_64 random(68);
+  std::uniform_real_distribution<double> size(0.02, 3.0);
+  int close = 0;
+  for (int n = 0; n < test::effort(400); ++n) {
+    const Vec3 half_a(size(random), 0.1 * size(random), 0.1 * size(random));
+    const Vec3 half_b(0.1 * size(random), size(random), 0.1 * size(random));
+    const SolidPtr a = solid(box_mesh(2.0 * half_a)), b = solid(box_mesh(2.0 * half_b));
+    const Pose X = random_pose(random, 2.0, kPi);
+    const double distance_mm = least_of_all(transformed(a->mesh(), X), b->mesh());
+    ccd::PairMotion motion(*a, still_motion(X), *b, still_motion({}));
+    motion.at(0.0);
+    const auto axes = [](const SolidPtr& s) {
+      return ccd::BoxAxes{nullptr, Vec3::Zero(), s->bvh().radius_mm};
+    };
+    const ccd::BoxFrame& frame = motion.still_frame(axes(a), axes(b));
+    float center[3][8] = {}, half[3][8];
+    ccd::OneBox one{};
+    for (int c = 0; c < 3; ++c) {
+      std::fill(half[c], half[c] + 8, static_cast<float>(half_a[c]));
+      one.half[c] = static_cast<float>(half_b[c]);
+    }
+    alignas(32) float lower[8], apart[8];
+    ccd::best_kernels().box.lower_a(frame, {center, half}, one, lower);
+    ccd::best_kernels().box.apart_a(frame, {center, half}, one, apart);
+    // The halves were rounded to float.
+    EXPECT_LE(static_cast<double>(lower[5]), distance_mm + 1e-6) << n;
+    EXPECT_LE(static_cast<double>(apart[5]), distance_mm + 1e-6) << n;
+    if (distance_mm == 0.0) continue;
+    EXPECT_GT(apart[5], -1e-4F) << n << ": of two boxes one of the fifteen axes shows the gap";
+    close += static_cast<double>(lower[5]) > 0.5 * distance_mm;
+  }
+  EXPECT_GT(close, 100) << "a bound of nothing is no bound";
 }
 
 // Ticks of a slow motion, each seeded with the answer of the one before; then seeds that are wrong.

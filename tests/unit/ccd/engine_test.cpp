@@ -64,6 +64,10 @@ TEST(BoxKernels, WideAndPortableAgreeToTheLastBit) {
     EXPECT_TRUE(same());
     wide.lower_b(frame, one_a, eight_b, x), portable.lower_b(frame, one_a, eight_b, y);
     EXPECT_TRUE(same());
+    wide.apart_a(frame, eight_a, one_b, x), portable.apart_a(frame, eight_a, one_b, y);
+    EXPECT_TRUE(same());
+    wide.apart_b(frame, one_a, eight_b, x), portable.apart_b(frame, one_a, eight_b, y);
+    EXPECT_TRUE(same());
   }
 }
 
