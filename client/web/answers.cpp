@@ -236,7 +236,7 @@ std::optional<Answer> refusal_of(Download download, GatewayState& state, const R
   if (!maker_of(download, request, state.options))
     return sentence(status::not_found,
                     download == Download::kPicture
-                        ? "no picture: this gateway knows no log; start it with --log FILE"
+                        ? "no picture: this gateway knows no log; start it with --read-log FILE"
                         : "this gateway knows no log; see --log");
   if (!state.reports.is_busy() && !state.ending) return std::nullopt;
   Answer answer =

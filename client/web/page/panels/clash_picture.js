@@ -53,7 +53,7 @@ export function makeClashPicture({ session, connection }, current) {
     figure.hidden = false;
     enlarge.hidden = shown === null;
     if (!session.hasReport) {
-      setText(line, 'No picture: the gateway knows no log. Start it with mortise web --log FILE');
+      setText(line, 'No picture: the gateway knows no log. Start it with mortise web --read-log FILE');
       return;
     }
     const mine = ++asked;
