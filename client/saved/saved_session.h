@@ -18,8 +18,7 @@ struct SavedSession {
   SavedScenario scenario;
   std::string stopped_early;  ///< why the log was not computed to its end, or empty
 };
-/// Computes the log to its end, from its last checkpoint where it was read with one. Fails for a
-/// session on a STEP assembly.
+/// Computes the log to its end, from its last checkpoint where it was read with one.
 Result<SavedSession> saved_session(const SessionLog& log, const OnReplayedTick& on_tick);
 
 /// Fails where the folder holds something.

@@ -10,6 +10,7 @@
 #include <set>
 
 #include "common/io/scenario/brought_part.h"
+#include "common/io/step/step_document.h"
 #include "common/messages/names.h"
 #include "common/session/memory/session_state.h"
 #include "common/session/world/standing.h"
@@ -88,10 +89,83 @@ std::map<std::string, YAML::Node> nodes_by_name(const YAML::Node& parts, const S
   return nodes;
 }
 
+// The parts of a STEP assembly as if somebody had brought them one by one: each with its mesh and
+// what the file states of it.
+class AssemblySolids {
+ public:
+  explicit AssemblySolids(const BegunScenario& begun) : begun_(begun) {
+    const auto& assembly = begun.scenario.assembly;
+    if (!assembly || !assembly->sent) return;
+    Result<StepDocument> document = decode_step(*assembly->sent);
+    if (document) document_ = std::move(*document);
+  }
+
+  bool is_as_begun(const Part& part) const {
+    const std::size_t i = part.id.value - 1;
+    return i < begun_.mesh_of_part.size() && begun_.mesh_of_part[i] == part.solid->hash();
+  }
+
+  // Of a part of the assembly, unless its mesh was replaced.
+  const Scenario::PartSpec* spec_of(const Part& part) const {
+    const std::size_t i = part.id.value - 1;
+    const auto& parts = begun_.scenario.parts;
+    return i < parts.size() && parts[i].mesh.given && is_as_begun(part) ? &parts[i] : nullptr;
+  }
+
+  // The mesh with what a STEP file states of it, where it is of one.
+  SolidPtr solid_of(const Part& part) {
+    const Scenario::PartSpec* spec = spec_of(part);
+    if (part.solid->mesh().stated || spec == nullptr ||
+        spec->mesh.given_number >= document_.parts.size())
+      return part.solid;
+    SolidPtr& made = made_[spec->mesh.given_number];
+    if (made) return made;
+    Result<TriangleMesh> mesh = brought_mesh(brought_bytes(document_, spec->mesh.given_number));
+    made = mesh ? std::make_shared<const Solid>(std::move(*mesh)) : part.solid;
+    return made;
+  }
+
+ private:
+  const BegunScenario& begun_;
+  StepDocument document_;
+  std::map<std::uint32_t, SolidPtr> made_;
+};
+
+// What a scenario says of a face of an assembly, as the keys of a feature.
+void put_statement(const Scenario::FeatureSpec& says, double unit_mm, YAML::Node at) {
+  if (!says.iso_class.empty()) at["iso"] = says.iso_class;
+  if (!says.iso_class.empty() && says.nominal_mm > 0.0)
+    at["nominal"] = digits(says.nominal_mm / unit_mm);
+  if (says.tolerance) {
+    at["tolerance"]["lower"] = digits(says.tolerance->offset_mm.lo / unit_mm);
+    at["tolerance"]["upper"] = digits(says.tolerance->offset_mm.hi / unit_mm);
+  }
+  if (!(says.position.zone_mm > 0.0)) return;
+  at["position"]["zone"] = digits(says.position.zone_mm / unit_mm);
+  constexpr const char* kAt[] = {"rfs", "mmc", "lmc"};
+  at["position"]["at"] = kAt[static_cast<std::size_t>(says.position.condition)];
+}
+
+// What the file of an assembly states of a part is in its mesh; this is what the scenario says
+// besides.
+void put_statements(const Scenario::PartSpec& spec, double unit_mm, YAML::Node& node) {
+  if (spec.tolerance) {
+    node["tolerance"]["lower"] = digits(spec.tolerance->offset_mm.lo / unit_mm);
+    node["tolerance"]["upper"] = digits(spec.tolerance->offset_mm.hi / unit_mm);
+  }
+  for (const Scenario::FeatureSpec& says : spec.features)
+    if (says.by == Scenario::SaidBy::kScenario)
+      put_statement(says, unit_mm, node["features"][says.name]);
+}
+
 class Writer {
  public:
   Writer(const BegunScenario& begun, const World& world)
-      : begun_(begun), world_(world), scenario_(begun.scenario), root_(YAML::Load(begun.yaml)) {}
+      : begun_(begun),
+        world_(world),
+        scenario_(begun.scenario),
+        root_(YAML::Load(begun.yaml)),
+        assembly_(begun) {}
 
   SavedScenario run() {
     const auto before = nodes_by_name(root_["parts"], scenario_);
@@ -99,6 +173,7 @@ class Writer {
     for (const Part& part : world_.parts)
       if (part.present) parts.push_back(node_of(part, before));
     root_["parts"] = parts;
+    root_.remove("assembly");
     root_["policy"] = std::string(name_of(world_.policy));
     pairs();
     approvals();
@@ -117,12 +192,11 @@ class Writer {
 
   YAML::Node node_of(const Part& part, const std::map<std::string, YAML::Node>& before) {
     const std::size_t i = part.id.value - 1;
-    const bool is_named = i < scenario_.parts.size();
+    const bool is_named = i < scenario_.parts.size() && !scenario_.parts[i].mesh.given;
     YAML::Node node = is_named ? YAML::Clone(before.at(part.name)) : YAML::Node();
     node["name"] = part.name;
-    const bool is_generated = is_named && !scenario_.parts[i].mesh.generator.empty() &&
-                              i < begun_.mesh_of_part.size() &&
-                              begun_.mesh_of_part[i] == part.solid->hash();
+    const bool is_generated =
+        is_named && !scenario_.parts[i].mesh.generator.empty() && assembly_.is_as_begun(part);
     if (!is_generated) {
       node.remove("generator");
       node.remove("mirror");
@@ -130,6 +204,8 @@ class Writer {
       node["mesh"]["unit"] = "mm";
       node["mesh"].remove("scale");
       if (!is_kept_whole(part)) surfaces(part, node);
+      if (const auto* spec = assembly_.spec_of(part))
+        put_statements(*spec, scenario_.unit_mm, node);
     }
     statements(part, node, is_generated);
     if (whole_of(part.id)) take_back(part, node);
@@ -145,10 +221,11 @@ class Writer {
   // Its mesh is kept with all that its file states of it, under the names that the faces have
   // there. Faces of a part that took this mesh may go by older names: then the mesh is kept alone.
   bool is_kept_whole(const Part& part) {
-    if (!part.solid->mesh().stated) return false;
+    const SolidPtr solid = assembly_.solid_of(part);
+    if (!solid->mesh().stated) return false;
     const auto [known, is_new] = whole_.try_emplace(part.id, false);
     if (!is_new) return known->second;
-    const Result<BroughtPart> brought = brought_part(part.solid->mesh());
+    const Result<BroughtPart> brought = brought_part(solid->mesh());
     known->second = brought && std::ranges::all_of(part.features, [&](const Feature& feature) {
                       return std::ranges::any_of(brought->given->features, [&](const Feature& own) {
                         return own.name == feature.name;
@@ -173,16 +250,16 @@ class Writer {
     name = "meshes/" + stem + ending;
     for (int n = 2; !names_.insert(name).second; ++n)
       name = "meshes/" + stem + "_" + std::to_string(n) + ending;
-    out_.meshes.push_back({name, part.solid, whole});
+    out_.meshes.push_back({name, assembly_.solid_of(part), whole});
     return name;
   }
 
   // Of a mesh file surfaces are said in full; those of faces that it no longer has go.
-  void surfaces(const Part& part, YAML::Node& node) const {
+  void surfaces(const Part& part, YAML::Node& node) {
     const YAML::Node said = node["features"];
     YAML::Node features;
     // Of a STEP file those of which something was said: the others may lie on one surface.
-    const bool all = !part.solid->mesh().stated;
+    const bool all = !assembly_.solid_of(part)->mesh().stated;
     for (const Feature& feature : part.features)
       if (feature.origin != FeatureOrigin::kRecognized && (all || (said && said[feature.name])))
         features[feature.name] = with_surface(feature, said ? said[feature.name] : YAML::Node());
@@ -242,8 +319,8 @@ class Writer {
 
   // What the file of a mesh states of a face, and somebody has taken back: a feature that says
   // nothing.
-  static void take_back(const Part& part, YAML::Node& node) {
-    const Result<BroughtPart> brought = brought_part(part.solid->mesh());
+  void take_back(const Part& part, YAML::Node& node) {
+    const Result<BroughtPart> brought = brought_part(assembly_.solid_of(part)->mesh());
     if (!brought) return;
     for (const Scenario::FeatureSpec& stated : brought->features) {
       const auto face = std::ranges::find(part.band.faces, stated.name, &SurfaceBand::Face::name);
@@ -331,9 +408,14 @@ class Writer {
     };
     say(static_cast<std::size_t>(std::ranges::count_if(
             world_.parts,
-            [&](const Part& p) { return p.present && p.solid->mesh().stated && !whole_of(p.id); })),
+            [&](const Part& p) {
+              return p.present && assembly_.solid_of(p)->mesh().stated && !whole_of(p.id);
+            })),
         "parts that took a mesh of a STEP file: of its exact surfaces those are kept of which "
         "something was said, of its tolerances none");
+    if (scenario_.assembly)
+      say(scenario_.assembly->bought.size(),
+          "names of what is bought: mortise check reports what is inside of it");
     say(world_.guides.size(), "constraints: they belong to who holds the part");
     say(static_cast<std::size_t>(
             std::ranges::count_if(world_.parts, [](const Part& p) { return bool(p.holder); })),
@@ -348,6 +430,7 @@ class Writer {
   const World& world_;
   const Scenario& scenario_;
   YAML::Node root_;
+  AssemblySolids assembly_;
   SavedScenario out_;
   std::map<std::string, std::string> files_;  ///< by hash of the mesh and ending
   std::map<PartId, bool> whole_;              ///< see is_kept_whole()
@@ -357,10 +440,6 @@ class Writer {
 }  // namespace
 
 Result<SavedScenario> saved_scenario(const BegunScenario& begun, const World& world) try {
-  if (begun.scenario.assembly)
-    return fail(Code::kInvalidInput,
-                "the parts of this session come from a STEP file, and a scenario of it cannot say "
-                "where each stands; go on with the log itself: mortise open LOG");
   return Writer(begun, world).run();
 } catch (const YAML::Exception& error) {
   return fail(Code::kInvalidInput, "the scenario of the log is not valid YAML: " + error.msg);

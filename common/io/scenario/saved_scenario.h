@@ -28,7 +28,7 @@ struct BegunScenario {
   const std::vector<std::string>& mesh_of_part;  ///< hash, by part of the scenario
 };
 
-/// Fails for a session on a STEP assembly, whose parts come from its file.
+/// Parts of a STEP assembly become parts of their own, with what its file states of each.
 Result<SavedScenario> saved_scenario(const BegunScenario& begun, const World& world);
 
 }  // namespace mortise

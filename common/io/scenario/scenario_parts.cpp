@@ -11,6 +11,7 @@
 #include "common/base/length_unit.h"
 #include "common/base/plain_text.h"
 #include "common/generators/generators.h"
+#include "common/io/scenario/brought_part.h"
 #include "common/io/scenario/scenario_tolerance.h"
 #include "common/math/rotation.h"
 #include "common/messages/names.h"
@@ -255,8 +256,9 @@ void read_feature(YamlContext& context, const std::string& name, const YAML::Nod
   feature.name = name;
   feature.at.line = map.line();
   read_surface(map, feature.surface);
+  // A generator and the file of a brought part name their faces themselves.
   if (!map.has("kind") && part.mesh.generator.empty() &&
-      part.undeclared == UndeclaredSurface::kNominal)
+      !part.mesh.file.ends_with(kBroughtEnding) && part.undeclared == UndeclaredSurface::kNominal)
     map.error(
         "kind is missing: write plane, cylinder, cone, sphere or torus, or deviation: recognized "
         "for the part");

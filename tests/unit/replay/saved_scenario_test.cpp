@@ -4,10 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <map>
 #include <set>
 
 #include "common/generators/generators.h"
 #include "common/io/log/replay.h"
+#include "common/io/scenario/assembly_parts.h"
 #include "common/io/scenario/brought_part.h"
 #include "common/io/scenario/open_scene.h"
 #include "common/io/scenario/scenario_file.h"
@@ -16,6 +18,7 @@
 #include "common/session/world/commands.h"
 #include "common/session/world/decisions.h"
 #include "common/session/world/part_shapes.h"
+#include "common/session/world/standing.h"
 #include "tests/support/programs.h"
 #include "tests/support/test_folder.h"
 #include "tests/unit/io/log_samples.h"
@@ -235,6 +238,17 @@ std::set<std::string> faces_of(const World& world, const std::string& part) {
   return faces;
 }
 
+// Where the real surface of each face may lie, by its name; not in whose words.
+std::map<std::string, std::string> offsets_of(const Part& part) {
+  std::map<std::string, std::string> offsets;
+  for (const SurfaceBand::Face& face : part.band.faces) {
+    const Interval at = face.tolerance_mm;
+    offsets[face.name] += std::to_string(static_cast<int>(face.grade)) + " " +
+                          std::to_string(at.lo) + " " + std::to_string(at.hi) + ";";
+  }
+  return offsets;
+}
+
 TEST_F(Saved, PartsOfAStepFileKeepWhatItStates) {
   const StepDocument document = brought_fit();
   const auto bring = [&](std::uint32_t number) {
@@ -272,6 +286,73 @@ TEST_F(Saved, PartsOfAStepFileKeepWhatItStates) {
   EXPECT_TRUE(faces_of(now, "pin_3").contains("shaft_1 2 "));
   for (const char* name : {"ring", "pin", "pin_2", "pin_3"})
     EXPECT_EQ(faces_of(now, name), faces_of(world(), name)) << name;
+}
+
+TEST_F(Saved, AnAssemblyKeepsItsPartsWhatItsFileStatesAndTheRulesInForce) {
+  const std::string yaml = R"(
+name: arm
+units: cm
+policy: report
+assembly: {file: arm.step, general: m, fixed: [base/ring]}
+fits:
+  - {between: [base/ring, base/pin_1], plus_minus: 0.002}
+)";
+  auto reading = read_scenario_text(yaml, "arm.yaml");
+  ASSERT_TRUE(reading && reading->usable());
+  add_assembly(*reading, encode(brought_fit()));
+  auto loaded = load_scene(reading->scenario, default_meshes());
+  ASSERT_TRUE(loaded && loaded->usable());
+  scene = std::move(*loaded);
+  header = log_header(scene, "arm", "arm.yaml", yaml);
+  const Decision join = decisions.front();
+  apply_decision(world(), join);
+  const PartId ring = part("base/ring"), pin = part("base/pin_1"), other = part("servo/pin_1");
+  Details fit;
+  fit.feature = "bore_1";
+  fit.other_part = pin;
+  fit.other_feature = "shaft_1";
+  fit.text = "H7/g6";
+  ask(CommandKind::kSetTolerance, ring, fit);
+  Details own;
+  own.feature = "shaft_1";
+  ask(CommandKind::kSetTolerance, other, own);
+  Details out;
+  out.other_part = other;
+  out.text = "glued";
+  ask(CommandKind::kSetExclusion, pin, out);
+  tick();
+  ask(CommandKind::kGrab, other);
+  push(other, Vec3(0, 0, 5));
+  const test::TestFolder folder;
+  write(folder.path() / "log.mcap");
+  const test::Outcome run =
+      test::run("mortise-replay", "export log.mcap --scenario kept", folder.path());
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const auto again = open_scene(folder.path() / "kept" / "scenario.yaml");
+  ASSERT_TRUE(again) << again.error().text;
+  ASSERT_TRUE(again->usable()) << again->findings.front().text;
+  const World& now = again->scene.world;
+  ASSERT_EQ(now.parts.size(), 3U);
+  for (const Part& was : world().parts) {
+    const Part* is = now.find_part(was.name);
+    ASSERT_NE(is, nullptr) << was.name;
+    EXPECT_LT((is->X_WP.p - was.X_WP.p).norm(), 1e-9) << was.name;
+    EXPECT_EQ(is->moving, was.moving) << was.name;
+    EXPECT_EQ(is->solid->mesh().triangles, was.solid->mesh().triangles) << was.name;
+    EXPECT_EQ(offsets_of(*is), offsets_of(was)) << was.name;
+  }
+  const auto rules = [](const World& of) {
+    std::multiset<std::string> all;
+    for (const Decision& said : standing_decisions(of))
+      if (said.details.other_part && !said.details.text.empty())
+        all.insert(of.find(said.part)->name + "." + said.details.feature + " " +
+                   of.find(said.details.other_part)->name + "." + said.details.other_feature);
+    return all;
+  };
+  EXPECT_EQ(rules(now), rules(world()));
+  EXPECT_EQ(rules(now).size(), 3U);
+  EXPECT_EQ(now.rule(now.find_part("base/ring")->id, now.find_part("base/pin_1")->id)->fit,
+            world().rule(ring, pin)->fit);
 }
 
 TEST_F(Saved, AFolderThatIsNotEmptyIsLeftAlone) {
