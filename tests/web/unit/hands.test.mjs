@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { Choice } from '../../../client/web/page/session/choice.js';
-import { between, ofOne } from '../../../client/web/page/session/measure.js';
+import { between, ofOne, realGap, realGapSaid } from '../../../client/web/page/session/measure.js';
 import { Mover } from '../../../client/web/page/session/mover.js';
 import { Session } from '../../../client/web/page/session/session.js';
 import { Stops } from '../../../client/web/page/session/stops.js';
@@ -19,6 +19,15 @@ test('a shaft in a bore: clearance, how far the axes are apart, and the least ga
   near(found['Least gap'], 0.005);
   assert.deepEqual(figures(cylinder([0.003, 0.004, 50], 10), cylinder([0, 0, 0], 10.01, true)), found, 'the order is of no meaning');
   assert.deepEqual(ofOne(cylinder([0, 0, 0], 10)), [{ name: 'Diameter', mm: 20 }]);
+});
+
+test('the real gap of a judged pair is an interval: Ø20 H7/g6 is 7 to 41 µm in diameter, however deep the meshes are in each other', () => {
+  const g6 = { delta: [0.048, 0.0481], fake_below: 0.0516, real_above: 0.0685, explanation: 'fake up to 51.6 µm, real above 68.5 µm' };
+  near(realGap(g6)[0], 0.0035);
+  near(realGap(g6)[1], 0.0205);
+  assert.equal(realGapSaid(g6), 'real gap 3.5 µm to 20.5 µm');
+  assert.equal(realGapSaid({ ...g6, explanation: 'fake up to 51.6 µm' }), 'real gap at least 3.5 µm', 'an end that was left open says nothing');
+  assert.equal(realGapSaid({ delta: [0.4, 0.5], fake_below: 0, real_above: 0.1, explanation: 'real above 100.0 µm' }), 'real gap -500.0 µm to -300.0 µm');
 });
 
 test('planes, points, spheres and axes', () => {

@@ -1,6 +1,6 @@
 // Measure: two faces or points are picked in the view; what is between them is said, with what the session knows of the same pair.
 import * as THREE from 'three';
-import { between, ofOne } from '../session/measure.js';
+import { between, ofOne, realGapSaid } from '../session/measure.js';
 import { placed, rotate } from '../session/motion.js';
 import { bracket, plain, small } from '../session/words.js';
 import { featureAt } from '../view/feature_at.js';
@@ -54,7 +54,9 @@ export function makeMeasure({ session, choice, labels, stage }) {
     if (picks.length < 2) return '';
     const [a, b] = picks.map(({ part }) => part.id);
     const clash = session.openClashes().find((c) => (c.a === a && c.b === b) || (c.a === b && c.b === a));
-    return clash ? ` The session: overlap ${bracket(clash.delta)} (clash #${clash.clash}).` : '';
+    if (a === b) return '';
+    if (!clash) return ' Real gap not known: the session judges parts that meet, or are nearer than their tolerances reach.';
+    return ` The session: overlap ${bracket(clash.delta)}, ${realGapSaid(clash)} (clash #${clash.clash}).`;
   }
 
   function refresh() {

@@ -1,5 +1,6 @@
 // Distances, angles and diameters between what was picked: points, axes, planes, centres, in the frame of the world, mm and rad.
 import { cross, dot, unit } from './slice.js';
+import { knownFake, knownReal, small } from './words.js';
 
 /** @typedef {import('./motion.js').Vec3} Vec3 */
 /**
@@ -23,6 +24,24 @@ const angleOf = (a, b) => Math.atan2(length(cross(a, b)), Math.abs(dot(a, b)));
 
 const hasAxis = (/** @type {Picked} */ p) => p.kind === 'cylinder' || p.kind === 'cone' || p.kind === 'torus';
 const isRound = (/** @type {Picked} */ p) => p.kind === 'cylinder' || p.kind === 'sphere';
+
+/**
+ * The gap of the real surfaces of a pair that the session has judged, where its two parts are deepest in each other: the overlap that is told, with what deviation and
+ * tolerances of both add to it. The thresholds are where that would begin to be possible, and be certain. Below 0: an overlap. null: that end was left open.
+ * @param {import('./session.js').Clash} clash @returns {[number | null, number | null]}
+ */
+export function realGap(clash) {
+  const [fake, real] = [knownFake(clash), knownReal(clash)];
+  return [fake === null ? null : fake - clash.delta[1], real === null ? null : real - clash.delta[0]];
+}
+
+/** @param {import('./session.js').Clash} clash */
+export function realGapSaid(clash) {
+  const [lo, hi] = realGap(clash);
+  if (lo === null && hi === null) return 'their real gap was not decided beyond the class';
+  if (lo === null) return `real gap at most ${small(hi)}`;
+  return hi === null ? `real gap at least ${small(lo)}` : `real gap ${small(lo)} to ${small(hi)}`;
+}
 
 /** What one of them has by itself. @param {Picked} picked @returns {Figure[]} */
 export function ofOne(picked) {
