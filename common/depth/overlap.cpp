@@ -33,6 +33,18 @@ constexpr std::uint64_t kGlance = 400, kGlancePerRoot = 2;
 // Evaluations of the overlap of the meshes, where the sharp bodies decide.
 constexpr std::uint64_t kMeshAlone = 1000;
 
+// Planes that are fitted to corners which a file has rounded are off by so many of its steps.
+constexpr double kFileSteps = 4.0;
+
+// The file is all that the part may be off by: no tolerance, and no more than corners that are off,
+// and planes that are fitted to them.
+bool is_rounding_alone(const SurfaceBand& band) {
+  return std::all_of(band.faces.begin(), band.faces.end(), [&](const SurfaceBand::Face& face) {
+    return face.tolerance_mm == Interval{} && is_plane_band(band, face) &&
+           std::max(-face.deviation_mm.lo, face.deviation_mm.hi) <= kFileSteps * band.quantum_mm;
+  });
+}
+
 // Of a region with one point: its two triangles decide it.
 OverlapRegion decided_there(const PairFrame& pair, OverlapRegion region) {
   region.deciding_triangle_a = region.triangle_a;
@@ -161,6 +173,23 @@ void cap_certain(const PairFrame& pair, const Bracket& certain, OverlapRegion& r
   region.certain_mm.lo = std::min(region.certain_mm.lo, most_mm);
 }
 
+// Where meshes touch in many places, the search of what may overlap there stays open; by their
+// planes it is told.
+void settle_touch(const OverlapQuery& query, const PairFrame& pair, OverlapResult& result) {
+  const auto is_open = [&](const OverlapRegion& region) {
+    return region.delta_mm.lo <= pair.touch_mm && region.delta_mm.hi > pair.touch_mm;
+  };
+  std::vector<OverlapRegion>& regions = result.regions;
+  if (result.no_inside || !std::any_of(regions.begin(), regions.end(), is_open) ||
+      !is_rounding_alone(*query.band_a) || !is_rounding_alone(*query.band_b) ||
+      !meshes_do_not_overlap(pair))
+    return;
+  if (pair.trivial) std::erase_if(regions, is_open);
+  for (OverlapRegion& region : regions)
+    region.delta_mm = without_touch(
+        {region.delta_mm.lo, std::min(region.delta_mm.hi, pair.touch_mm)}, pair.touch_mm);
+}
+
 class Overlap {
  public:
   explicit Overlap(const OverlapQuery& query)
@@ -188,6 +217,7 @@ class Overlap {
         result_.regions.push_back(region_of(pair_, *shared));
     if (result_.no_inside) add_without_depth(candidates);
     planes_->tell(query_.only_certain, result_.regions);
+    if (!query_.only_certain) settle_touch(query_, pair_, result_);
     if (!query_.only_certain && !planes_->decided() && !covers_.apart(Layer::kUpper)) add_tip();
     if (!query_.only_certain) covers_.tell(result_.regions);
     mark_cracks(pair_, !query_.only_certain, result_);
@@ -470,15 +500,21 @@ double file_mm(const SurfaceBand& band, std::uint32_t triangle) {
   return grows ? 0.0 : band.quantum_mm;
 }
 
-// Where the meshes do not overlap, the rounding of their files alone makes no collision.
+// Where the meshes do not overlap, the rounding of their files alone makes no collision, nor at
+// edges and corners, which it moves farther than faces.
 void leave_out_rounding(const OverlapQuery& query, OverlapResult& result) {
   if (query.only_certain || result.no_inside || (query.band_a->trivial && query.band_b->trivial))
     return;
+  const bool alone = !result.regions.empty() && is_rounding_alone(*query.band_a) &&
+                     is_rounding_alone(*query.band_b);
   std::erase_if(result.regions, [&](const OverlapRegion& region) {
     const double files_mm = file_mm(*query.band_a, region.deciding_triangle_a) +
                             file_mm(*query.band_b, region.deciding_triangle_b);
-    if (region.closed_form || region.possible_mm.hi > files_mm + kDepthAccuracyDefault_mm)
-      return false;
+    if (region.closed_form) return false;
+    if (alone && region.delta_mm.hi <= 0.0 &&
+        region.possible_mm.hi <= PlaneFaces::kMostTravel * files_mm)
+      return true;
+    if (region.possible_mm.hi > files_mm + kDepthAccuracyDefault_mm) return false;
     const double touch_mm = PairFrame(query).touch_mm;
     return region.delta_mm.lo <= touch_mm && !(region.certain_mm.lo > 0.0) &&
            region.possible_mm.hi <= files_mm + 2.0 * touch_mm;

@@ -1,6 +1,7 @@
 #include "common/depth/cells/plane_pair.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "common/ccd/distance.h"
@@ -13,6 +14,8 @@ namespace {
 // Depths are told up to so many times what all offsets make together; beyond, so much deeper.
 // Of convex parts however deep.
 constexpr double kDepths = 2.0, kDeeper = 4.0, kAnyDepth = 2.0;
+// Meshes that touch are looked at to a depth of so many times what counts as touching.
+constexpr double kTouches = 10.0;
 // A place for a later look lies this share of the way from the witness to the face of A.
 constexpr double kTowardsFace = 0.9;
 
@@ -205,6 +208,21 @@ OverlapRegion PlanePair::region() const {
   region.normal_W = pair_.X_W[1].q * pair_.bodies[1].plane_faces().faces[largest.face_b].n;
   region.points_W = {region.point_W};
   return region;
+}
+
+bool meshes_do_not_overlap(const PairFrame& pair) {
+  if (!has_plane_faces(pair.bodies[0]) || !has_plane_faces(pair.bodies[1])) return false;
+  std::array<PlaneFaces, 2> planes = {pair.bodies[0].plane_faces(), pair.bodies[1].plane_faces()};
+  for (PlaneFaces& of_part : planes)
+    for (PlaneFace& face : of_part.faces) face.offset_mm = {};
+  SharpQuery query;
+  query.a = {pair.bodies[0].solid, &planes[0]};
+  query.b = {pair.bodies[1].solid, &planes[1]};
+  query.X_BA = pair.X_KS[0];
+  query.depth_mm = kTouches * pair.touch_mm;
+  const SharpDecision decision = decide(query);
+  return decision.state == SharpDecision::State::kDecided &&
+         decision.largest.margin_mm.hi <= pair.touch_mm + planes[0].noise_mm + planes[1].noise_mm;
 }
 
 bool is_outside_of_least_bodies(const PairFrame& pair, const Vec3& x_W) {

@@ -51,6 +51,10 @@ class PlanePair {
   bool decided_ = false;  // whether the least bodies interfere, and whether the largest do
 };
 
+/// True: the meshes, without any offset, overlap by no more than touch and what their corners are
+/// off their planes, and all faces near both are plane. False: they do, or that is not known.
+bool meshes_do_not_overlap(const PairFrame& pair);
+
 /// True: x is not in both least bodies, for faces around it that are all plane. False: it is, or
 /// that is not known.
 bool is_outside_of_least_bodies(const PairFrame& pair, const Vec3& x_W);

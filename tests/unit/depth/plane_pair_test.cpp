@@ -5,10 +5,14 @@
 #include <cmath>
 #include <numbers>
 
+#include "common/ccd/distance.h"
 #include "common/depth/cells/sharp_window.h"
 #include "common/evaluation/band.h"
+#include "common/geometry/recognition/recognition.h"
 #include "common/geometry/tips.h"
+#include "common/math/rotation.h"
 #include "tests/support/effort.h"
+#include "tests/support/lofted.h"
 #include "tests/unit/depth/overlap_case.h"
 #include "tests/unit/depth/random_polyhedra.h"
 
@@ -236,6 +240,71 @@ TEST(PlanePair, AnEdgeThatTwoBodiesShareHasTheTipsOfBoth) {
   const SolidPtr both = joined(one, other);
   EXPECT_EQ(find_tips(*both, plus_minus(both, 0.1)).size(),
             2 * find_tips(*one, plus_minus(one, 0.1)).size());
+}
+
+SurfaceBand recognized_of_file(const SolidPtr& solid) {
+  const std::vector<Feature> features = recognize_features(*solid).features;
+  BandInput input;
+  input.solid = solid.get();
+  input.features = features;
+  input.of_feature.resize(features.size());
+  input.estimate = true;
+  input.quantum_mm = 2e-6;
+  return build_band(input);
+}
+
+// A sharp edge travels farther than its faces, also by the rounding of a file.
+TEST(PlanePair, AnEdgeThatTouchesIsNoCollisionByRoundingAlone) {
+  Pose X;
+  X.q = Eigen::Quaterniond(0.3, -0.5, 0.7, 0.2).normalized();
+  X.p = Vec3(17, -33, 21);
+  OverlapCase c;
+  c.a = turned(block({-20, -20, -10}, {20, 20, 0}), X);
+  c.b = turned(wedge(20 * kDegree), X);
+  c.band_a = recognized_of_file(c.a);
+  c.band_b = recognized_of_file(c.b);
+  // As it lies after rounding: moved up to where it just touches.
+  const Vec3 up = X.q * Vec3::UnitZ();
+  double gap_mm = 0.0;
+  CcdScratch scratch;
+  for (int i = 0; i < 20 && !(gap_mm > 1e-7 && gap_mm < 5e-7); ++i) {
+    c.X_WB.p += (i == 0 ? 1e-3 : 3e-7 - gap_mm) * up;
+    gap_mm = distance(*c.a, c.X_WA, *c.b, c.X_WB, scratch).distance_mm;
+  }
+  ASSERT_NEAR(gap_mm, 3e-7, 2e-7);
+  EXPECT_EQ(agreed_class(c), CollisionClass::kNone);
+}
+
+// A bar that is tilted in its hole as far as it can be: edges cross, and the search of triangles
+// cannot tell that nothing overlaps where they touch.
+TEST(PlanePair, ABarThatTouchesItsHoleAtManyEdgesIsApart) {
+  polyhedra::Random random(5);
+  for (int i = 0; i < test::effort(4); ++i) {
+    const int sides = 3 + i % 6;
+    const auto section = [&](double radius_mm) {
+      return shapes::ellipse(radius_mm, radius_mm, sides, 0.2);
+    };
+    const double less_mm = polyhedra::between(random, 0.01, 0.2);
+    OverlapCase c;
+    c.a = shapes::solid(shapes::plate_with_hole(section(7.0), 0.0, 10.0));
+    c.b = shapes::solid(shapes::lofted({shapes::at_height(section(7.0 - less_mm), -5.0),
+                                        shapes::at_height(section(7.0 - less_mm), 15.0)}));
+    Vec3 axis = polyhedra::direction(random);
+    axis.z() = 0.0;
+    const auto tilted = [&](double by_rad) {
+      const Pose about{Quat::Identity(), Vec3(0, 0, 5)};
+      return about * Pose{rotation_exp(by_rad * axis.normalized()), Vec3::Zero()} * about.inverse();
+    };
+    double free_rad = 0.0, met_rad = 0.2;
+    CcdScratch scratch;
+    for (int k = 0; k < 60; ++k) {
+      const double tilt_rad = 0.5 * (free_rad + met_rad);
+      const double gap_mm = distance(*c.a, c.X_WA, *c.b, tilted(tilt_rad), scratch).distance_mm;
+      (gap_mm > 1e-7 ? free_rad : met_rad) = tilt_rad;
+    }
+    c.X_WB = tilted(free_rad);
+    EXPECT_EQ(agreed_class(c), CollisionClass::kNone) << i;
+  }
 }
 
 // The classes of find_overlap against linear programs over the half-spaces.
