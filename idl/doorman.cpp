@@ -51,12 +51,26 @@ void Doorman::on_publisher_discovery(dds::DomainParticipant*, rtps::WriterDiscov
 }
 
 void Doorman::on_liveliness_changed(dds::DataReader*, const dds::LivelinessChangedStatus& status) {
-  if (status.alive_count_change < 0 || status.not_alive_count_change > 0)
-    add(rtps::iHandle2GUID(status.last_publication_handle));
+  const ClientKey client = client_key(rtps::iHandle2GUID(status.last_publication_handle));
+  const std::lock_guard lock(mutex_);
+  if (status.not_alive_count_change > 0)
+    in_doubt_.emplace(client, 0);
+  else if (status.alive_count_change > 0)
+    in_doubt_.erase(client);
+  else if (status.alive_count_change < 0)
+    gone_.push_back(client);
 }
 
 std::vector<ClientKey> Doorman::take() {
   const std::lock_guard lock(mutex_);
+  for (auto doubt = in_doubt_.begin(); doubt != in_doubt_.end();) {
+    if (++doubt->second <= kTakesInDoubt) {
+      ++doubt;
+      continue;
+    }
+    gone_.push_back(doubt->first);
+    doubt = in_doubt_.erase(doubt);
+  }
   return std::exchange(gone_, {});
 }
 
@@ -91,6 +105,7 @@ void Doorman::tell_repeats(std::uint64_t in_all, std::vector<std::string>& texts
 
 void Doorman::add(const rtps::GUID_t& guid) {
   const std::lock_guard lock(mutex_);
+  in_doubt_.erase(client_key(guid));
   gone_.push_back(client_key(guid));
 }
 

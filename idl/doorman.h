@@ -20,7 +20,11 @@ class Doorman final : public dds::DomainParticipantListener {
   void know(PeerIdentities* identities) { identities_ = identities; }
 
   LeadersMet& leaders() { return leaders_; }
+  /// Who has gone since, asked once a tick. A client that was not heard for its lease counts as
+  /// gone after kTakesInDoubt more, and not at all if it is heard again by then: where this process
+  /// stood still, its datagrams wait to be read.
   std::vector<ClientKey> take();
+  static constexpr int kTakesInDoubt = 3;
   /// Who was not let in since, and why, in words. Also those of whom nothing was proven in time:
   /// where the other end is to begin the handshake and does not like our certificate, nobody tells
   /// us. Not who is revoked: PeerIdentities tells of them.
@@ -52,6 +56,7 @@ class Doorman final : public dds::DomainParticipantListener {
   LeadersMet leaders_;
   std::mutex mutex_;
   std::vector<ClientKey> gone_;
+  std::map<ClientKey, int> in_doubt_;  // not heard for its lease; asked so often since
   std::vector<std::string> turned_away_;
   std::map<ClientKey, Unproven> unproven_;
   PeerIdentities* identities_ = nullptr;
