@@ -43,7 +43,7 @@ foreach(line IN LISTS listed)
     endif()
     set_tests_properties(${room}.${test} PROPERTIES TIMEOUT ${timeout} LABELS "${labels_of_test}" ENVIRONMENT "${environment}"
       SKIP_REGULAR_EXPRESSION "\\[  SKIPPED \\]")
-    # CTest is started with four places a core: who computes takes two of them, and who waits for others one.
+    # CTest is started with three places a core: who computes takes two of them, and who waits for others one.
     if(labels MATCHES network)
       set_tests_properties(${room}.${test} PROPERTIES COST 50 RUN_SERIAL ${soak})
     else()

@@ -3,7 +3,7 @@
 #   demo    configure, and build what ./mortise demo runs               bar 240 s
 #   test    the rest of ./mortise test: build what is missing, run all  bar 900 s with demo's build
 #   depth   one source of common/depth changed, to the end of its tests bar  60 s
-# Tests run with four places a core, as ./mortise test runs them (tests/cases.cmake says who takes how many).
+# Tests run with three places a core, as ./mortise test runs them (tests/cases.cmake says who takes how many).
 # REPORT is what bench_figures keeps: ./mortise bench build_time.
 # Wall time is right on a machine that does nothing else; CPU / 2 is what two cores need at least. Exit code 5: a bar is not
 # met; 1: a build or a test failed.
@@ -61,12 +61,12 @@ demo() {
 tests() {
   cmake -S . -B "$build" -DMORTISE_TESTS=ON &&
     ninja -C "$build" -j 2 &&
-    ctest --test-dir "$build" --output-on-failure -j 8 --resource-spec-file "$PWD/tests/resources.json"
+    ctest --test-dir "$build" --output-on-failure -j 6 --resource-spec-file "$PWD/tests/resources.json"
 }
 depth() {
   touch common/depth/patch.cpp &&
     ninja -C "$build" -j 2 test_depth &&
-    ctest --test-dir "$build" --output-on-failure -j 8 -L '^depth$'
+    ctest --test-dir "$build" --output-on-failure -j 6 -L '^depth$'
 }
 
 echo "$(nproc) cores, load $(cut -d' ' -f1 /proc/loadavg), $(c++ --version | head -n 1)"
