@@ -24,6 +24,7 @@ class Doorman final : public dds::DomainParticipantListener {
   /// gone after kTakesInDoubt more, and not at all if it is heard again by then: where this process
   /// stood still, its datagrams wait to be read.
   std::vector<ClientKey> take();
+  /// 50 ms at 60 Hz: what waits is read within a tick or two, and others learn it in 1.1 leases.
   static constexpr int kTakesInDoubt = 3;
   /// Who was not let in since, and why, in words. Also those of whom nothing was proven in time:
   /// where the other end is to begin the handshake and does not like our certificate, nobody tells
