@@ -65,6 +65,9 @@ Result<std::optional<Resumed>> resume(SessionStart& start, const ServerOptions& 
            from_tick > 0 ? fmt::format(", the state after tick {} from a checkpoint", from_tick)
                          : std::string(),
            played->ticks_computed, took.count());
+  if (const int begun_for = start.scene.world.threads; begun_for != options.threads)
+    log_info("ticks keep work for {} thread(s), as the session began with; --threads {} plays them",
+             begun_for, options.threads);
   if (played->ticks_left_out > 0) {
     log_warning("{} ticks of {} are left out: {}", played->ticks_left_out, start.source,
                 played->left_out_because);
