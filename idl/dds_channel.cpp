@@ -146,7 +146,7 @@ Status DdsServerChannel::stand_by(const DdsOptions& options) {
 }
 
 Status DdsServerChannel::take_over() {
-  term_ = next_term(std::max(leader_.term(), led_until_ms_));
+  term_ = leader_.term() != 0 ? term_of_successor(leader_.term()) : next_term(led_until_ms_);
   participant_->set_term(term_);
   if (Status opened = open_endpoints(); !opened) return opened;
   beat_ = std::make_unique<Heartbeat>(*ticks_);
@@ -154,7 +154,7 @@ Status DdsServerChannel::take_over() {
 }
 
 void DdsServerChannel::lead_anew() {
-  term_ = next_term(term_);
+  term_ = term_led_anew(term_);
   writers_.change_term(*participant_, term_);
 }
 

@@ -130,23 +130,41 @@ TEST_F(DemoAcrossHosts, SoakAllSeeWhatTheLogSays) {
       applied_s_.size(), 1e3 * applied_s_.at(applied_s_.size() / 2), otto_.events.size());
 }
 
-TEST_F(Hosts, AStandbyThatWasCutOffDoesNotTakeTheUsersAway) {
-  come_in();
-  ASSERT_FALSE(HasFailure());
-  sleep_s(1.5);
-  link_->cut({kStandbySide});
-  sleep_s(1.5);  // long enough for the first one to see that it is gone
-  EXPECT_TRUE(until(
-      kPatience_s, [&] { return said("taken over"); }, [] {}))
-      << standby_->errors();
-  link_->cut({});
-  EXPECT_EQ(standby_->wait(kPatience_s), 1) << standby_->errors();
-  leave();
-  end_server();
-  EXPECT_FALSE(superseded_);
-  for (const Hand& hand : hands_) EXPECT_EQ(hand.changes, 0);
-  EXPECT_EQ(lost(first_log_), 0u);
-}
+/// A standby that is cut off takes over, as it must. It has nobody, and ends when it is met again.
+class CutOffStandby : public Hosts {
+ public:
+  CutOffStandby() { SetUp(); }
+  ~CutOffStandby() override { TearDown(); }
+  void TestBody() override {}
+  /// `late`: it takes over when the first one has gone on alone already.
+  bool play(bool late) {
+    come_in();
+    if (HasFailure()) return true;
+    sleep_s(1.5);
+    link_->cut({kStandbySide});
+    if (late) standby_->signal(SIGSTOP);
+    const bool is_alone = until(
+        kPatience_s, [&] { return noted("is not waited for") || noted("going on without"); },
+        [] {});
+    standby_->signal(SIGCONT);
+    EXPECT_TRUE(is_alone);
+    EXPECT_TRUE(until(
+        kPatience_s, [&] { return said("taken over"); }, [] {}))
+        << standby_->errors();
+    link_->cut({});
+    if (noted("going on without")) return false;
+    EXPECT_EQ(standby_->wait(kPatience_s), 1) << standby_->errors();
+    leave();
+    end_server();
+    EXPECT_FALSE(superseded_);
+    for (const Hand& hand : hands_) EXPECT_EQ(hand.changes, 0);
+    EXPECT_EQ(lost(first_log_), 0u);
+    return true;
+  }
+};
+
+TEST(HostsCutOff, AStandbyDoesNotTakeTheUsersAway) { play_rounds<CutOffStandby>(false); }
+TEST(HostsCutOff, AStandbyThatTakesOverLateDoesNeither) { play_rounds<CutOffStandby>(true); }
 
 TEST_F(Hosts, AFirstThatWasCutOffHasSaidNothingThatIsLost) {
   come_in();
