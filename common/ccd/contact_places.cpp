@@ -81,6 +81,7 @@ class Places {
   void add(const Triangle& x, const Triangle& y) {
     const TriangleSeparation apart = triangle_separation_outside(x, y);
     const Vec3 n = -apart.normal;  // from B to A
+    // A unit vector, or zero where triangles cross.
     if (!(n.squaredNorm() > 0.5) || apart.distance_mm > reach_mm_) return;
     const Vec3 out_a = face_normal(x), out_b = face_normal(y);
     if (-n.dot(out_a) < kFacing || n.dot(out_b) < kFacing) return;

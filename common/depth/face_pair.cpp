@@ -41,6 +41,7 @@ std::optional<Vec3> farthest_direction(const Vec3& d, const Vec3& axis, const In
   const double z = std::clamp(length > 0.0 ? along : 0.5 * (rise.lo + rise.hi),
                               std::max(-1.0, rise.lo), std::min(1.0, rise.hi));
   Vec3 flat = straight - along * axis;
+  // Straight along the axis: any way across is as near.
   if (!(flat.norm() > 1e-12)) flat = axis.unitOrthogonal();
   return Vec3(z * axis + std::sqrt(std::max(0.0, 1.0 - z * z)) * flat.normalized());
 }

@@ -237,6 +237,8 @@ void set_curvature_of_cone(const Surface& cone, const Piece& piece, double inwar
   radius_mm += inward_mm;  // the images are moved along normals that turn alike
   shape.turn_rad = turn_rad;
   shape.bulges_outward = !cone.inward;
+  // More than a quarter turn, or a mesh that is off its cone by half of the radius: a near bound
+  // would help nobody, and twice the radius bounds any.
   if (turn_rad > 0.5 * std::numbers::pi || most > 0.5 || least < -0.5) {
     shape.bulge_mm = shape.slip_mm = 2.0 * radius_mm;
     return;

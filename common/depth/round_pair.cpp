@@ -300,6 +300,7 @@ std::optional<RoundReach> round_reach(const RoundFace& convex, const RoundFace& 
   if (std::fabs(slope) < kSlidingFitCosine) return std::nullopt;
   // A generator that runs square to the hollow axis meets no height of it.
   const double tilt = std::sqrt(std::max(0.0, 1.0 - slope * slope));
+  // Half of square is far enough from it: the search's heights stay finite.
   if (std::fabs(convex.widening) * tilt > 0.5 * std::fabs(slope)) return std::nullopt;
   return RoundSearch(convex, hollow).run(margin_mm, accuracy_mm, limit_mm);
 }

@@ -147,6 +147,7 @@ class TubeSearch {
     const FaceArc face = reached_arc();
     const double straight = length + r + off - wall_.tube_radius_mm;
     const double across_mm = length + off;
+    // From 0.9 r on the circle's own slope is worse than the straight bound.
     if (face.whole() || beyond(face, std::atan2(w.up, w.out)) <= 0.0 || !(across_mm < 0.9 * r) ||
         c.out - off < kFarFromAxis * r)
       return straight;

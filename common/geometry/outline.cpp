@@ -168,6 +168,7 @@ double convex_slack(const TriangleMesh& mesh, const Bvh& bvh, const Topology& to
     for (const std::uint32_t p : triangle)
       radius_mm = std::max(radius_mm, (mesh.points_mm[p] - middle).norm());
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    // A unit vector, or zero of a triangle without an area.
     if (!(normals[t].squaredNorm() > 0.5)) continue;
     const Vec3 x = farthest_corner(bvh, outline, normals[t]);
     above_mm = std::max(above_mm, normals[t].dot(x - mesh.corner(t, 0)));

@@ -138,6 +138,8 @@ class RoundInWall {
               sign * ((point_[e] - wall_.point).dot(wall_.axis) + rise * (p.r_mm - slope * p.z_mm));
           const double by = sign * (axis_[e].dot(wall_.axis) + rise * slope);
           const double left = most - at;
+          // Square to the wall's axis within rounding: all of it is at one height, and out only
+          // where it is a picometre out.
           if (std::fabs(by) < 1e-12) {
             if (left < -1e-9 - 1e-12 * (std::fabs(p.z_mm) + std::fabs(q.z_mm))) lo = kInfinity;
           } else if (by > 0.0) {

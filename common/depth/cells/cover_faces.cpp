@@ -63,6 +63,7 @@ CoverFaces::Border CoverFaces::border(const Vec3& n, double c_mm) const {
   bool found = false;
   for (std::size_t i = 0; i < planes.faces.size(); ++i) {
     const PlaneFace& face = planes.faces[i];
+    // Parallel by the second rule, so the first tells the sides alone.
     if (n.dot(face.n) < 0.5 || n.cross(face.n).norm() > kParallel ||
         std::fabs(n.dot(mesh().corner(face.triangle, 0)) - c_mm) > same_mm)
       continue;

@@ -138,6 +138,7 @@ class Hollow {
       const Surface& s = *arcs_[i].surface;
       for (const std::uint32_t t : arcs_[i].triangles) {
         Vec3 n = f_.body.normal(t);
+        // A unit vector, or zero of a triangle without an area.
         if (!(n.norm() > 0.5)) continue;
         n = (n - n.dot(axis_) * axis_).normalized();
         double c_mm = kInfinity;

@@ -78,6 +78,7 @@ class CoverPair::Bound {
   // All of K is below, all of S above, along a direction fixed in K.
   bool by_direction(int role, const Vec3& towards) {
     const double length = towards.norm();
+    // No direction at all.
     if (!(length > 1e-12)) return false;
     const Vec3 n = towards / length;
     return by_plane(role, {n, k(role).support_mm(n)});
@@ -170,6 +171,7 @@ class CoverPair::Bound {
     };
     const Vec3 between = chord.X_KS[0] * s(0).middle - k(0).middle;
     const double size_mm = between.norm();
+    // Both middles are one point: no direction to begin with.
     if (!(size_mm > 1e-12)) return;
     LeastReach search(farthest, tried, size_mm);
     const bool how_deep = asked_ == Asked::kHowDeep;

@@ -66,6 +66,7 @@ class Prism {
   bool is_cap(std::uint32_t t) const {
     for (int k = 0; k < 3; ++k)
       if (axis_.dot(f_.mesh().corner(t, k)) < height_.hi - f_.same_mm) return false;
+    // Corners at the upper end alone: the normal is the axis itself, or across it.
     return f_.body.normal(t).dot(axis_) > 0.5;
   }
 

@@ -76,6 +76,7 @@ Arc arc_of(const CoverFaces& f, const ProfileArc& own, const Vec3& axis) {
   }
   if (!(widest > kAlongProfile)) return {};
   Vec3 middle = axis.cross(after) - axis.cross(before);
+  // Neighbours that look opposite ways cancel: their sum says the middle then.
   if (middle.norm() < 0.5) middle = (widest < std::numbers::pi ? -1.0 : 1.0) * (after + before);
   return {after, middle.normalized(), before};
 }
@@ -155,6 +156,7 @@ class Profile {
       if (std::fabs(face.n.dot(axis_)) > kAlongProfile || sides_.size() >= kMostProfilePlanes)
         continue;
       const bool known = std::any_of(sides_.begin(), sides_.end(), [&](const Side& side) {
+        // Parallel by the second rule, so the first tells the sides alone.
         return side.n.dot(face.n) > 0.5 && side.n.cross(face.n).norm() <= kAlongProfile;
       });
       double most = -kInfinity;

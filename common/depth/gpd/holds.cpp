@@ -165,6 +165,7 @@ class Holds {
 
   // way: out for A. owner: the part whose surface x is on, -1: not known.
   void add(const Vec3& x, const Vec3& way, int owner) {
+    // A unit vector, or zero of a triangle without an area.
     if (!(way.norm() > 0.5) || lines_.size() >= query_.most_lines) return;
     Line line{x, way.normalized(), {}};
     double along_a[kCenters], along_b[kCenters], in_a[kCenters], in_b[kCenters];

@@ -63,6 +63,8 @@ class Random {
   Vec3 direction() {
     for (;;) {
       const Vec3 x(2.0 * next() - 1.0, 2.0 * next() - 1.0, 2.0 * next() - 1.0);
+      // In the ball, so that all ways are as likely; not at its middle, where the quotient says
+      // little.
       if (const double n = x.squaredNorm(); n > 1e-4 && n <= 1.0) return x / std::sqrt(n);
     }
   }
@@ -188,6 +190,7 @@ class Search {
       if (rows.empty() || !solve(rows, to)) return false;
       const double step = length(to - xi), most = kStepOverReach * reach_mm;
       xi = step > most ? Vec6(xi + (to - xi) * (most / step)) : to;
+      // A picometre on is no way out: rounding of poses is as large.
       if (length(xi) >= limit_mm || step < 1e-9) return false;
       if (is_free_on_the_way(xi)) return true;
       // The rows ask for no more, and yet they meet, between the places that are seen.
@@ -256,6 +259,7 @@ class Search {
   std::vector<Vec3> lines() const {
     std::vector<Vec3> lines;
     const auto add = [&](const Vec3& d) {
+      // A unit vector, or zero of a triangle without an area.
       if (!(d.norm() > 0.5)) return;
       for (const Vec3& other : lines)
         if (std::fabs(other.dot(d)) > 0.9995 * d.norm()) return;  // within two degrees

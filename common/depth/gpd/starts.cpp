@@ -37,6 +37,7 @@ class Pair {
 
   void add_normal(std::vector<Vec6>& twists) const {
     const OverlapRegion& region = query_.regions.front();
+    // A unit vector, or zero where the region has none.
     if (!(region.normal_W.norm() > 0.5)) return;
     const double lo = std::max(region.delta_mm.lo, 0.0);
     // A bracket that was not refined says little: start from what is known to be needed.
@@ -147,6 +148,7 @@ class Pair {
     if (sizes[1] > kSlides * sizes[2]) return {solver.eigenvectors().col(0)};
     // All normals are along one line. Walls that face each other leave a plane: along their edges.
     std::vector<Vec3> edges;
+    // All look the same way: no walls that face each other.
     if (mean.norm() > 0.9) return edges;
     const TriangleMesh& mesh = query_.overlap.b->mesh();
     const std::uint32_t t = region.deciding_triangle_b;

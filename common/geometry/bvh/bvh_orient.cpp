@@ -84,6 +84,7 @@ bool patch_of(const Bvh& bvh, Span span, Patch& patch) {
 bool axes_along(const Vec3& normal, const Vec3& along, Mat3& axes) {
   Vec3 x = along - along.dot(normal) * normal;
   x -= x.dot(normal) * normal;  // once more: the first difference may have cancelled
+  // Within 1e-3 rad of the normal nothing is left to go by but rounding.
   if (!(x.squaredNorm() > 1e-6 * along.squaredNorm())) return false;
   axes.row(0) = x.normalized();
   axes.row(2) = normal;

@@ -39,6 +39,7 @@ double hidden_mm(double width_mm, double angle_rad) {
 bool alike(const Surface& a, const Surface& b, double share) {
   if (a.kind != b.kind || a.inward != b.inward) return false;
   const double size = std::max(a.radius_mm, b.radius_mm);
+  // A milliradian is what facets of one cone leave between two fits of it.
   return a.kind == SurfaceKind::kCone
              ? std::fabs(a.half_angle_rad - b.half_angle_rad) < 1e-3
              : std::fabs(a.radius_mm - b.radius_mm) <= 4.0 * share * size + 1e-6 * size &&
@@ -51,6 +52,7 @@ bool near_axis(const Surface& a, const Surface& b) {
   if (a.kind != b.kind) return false;
   const double size = std::max(a.radius_mm, 1e-6 * (a.point - b.point).norm());
   const Vec3 d = b.point - a.point;
+  // Only who is asked at all: alike() and a fit of both decide. So these are wide.
   if (a.kind == SurfaceKind::kSphere) return d.norm() <= 0.01 * size;
   if (a.axis.cross(b.axis).norm() > 0.02) return false;
   if (a.kind == SurfaceKind::kCone) return true;
@@ -109,6 +111,7 @@ class Finisher {
       // About the same stretch of the axis, else they are two features that happen to be alike.
       const Interval a = extent_along_mm(mesh_, into.surface, into.triangles);
       const Interval b = extent_along_mm(mesh_, into.surface, piece.triangles);
+      // Pieces of one bore share most of its length; a tenth is a rim that both touch.
       if (std::min(a.hi, b.hi) - std::max(a.lo, b.lo) <= 0.1 * std::min(a.width(), b.width()))
         return false;
     }

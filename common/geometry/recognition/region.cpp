@@ -237,6 +237,7 @@ bool RegionGrower::shows_enough_of_sphere(const Region& region) const {
     mean_place += (f.point - s.point).normalized();
   }
   double least = -1.0;
+  // All around the ball places cancel, and no side is its middle.
   if (mean_place.norm() > 1e-9 * static_cast<double>(facets.size())) {
     least = 1.0;
     for (const OrientedPoint& f : facets)

@@ -324,6 +324,7 @@ std::optional<Surface> fitted(const Surface& start, const Scaled& frame, double 
     const double cost_before = sums.cost;
     const auto step_size = take_step<kind>(frame, m, sums, damping, worth_going_on);
     if (step_size && std::isnan(*step_size)) return std::nullopt;
+    // Steps are in units of the part: below this they are rounding.
     if (!step_size || *step_size < 1e-15 || sums.cost > (1.0 - worth_going_on) * cost_before) break;
   }
   if (!sound(kind, m)) return std::nullopt;

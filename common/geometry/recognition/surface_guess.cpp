@@ -63,6 +63,8 @@ std::optional<Vec3> steady_direction(std::span<const OrientedPoint> facets, cons
   for (const OrientedPoint& f : facets)
     spread += (f.normal - about) * (f.normal - about).transpose();
   const Eigen::SelfAdjointEigenSolver<Mat3> solver(spread);
+  // All normals on one line within 1e-6 rad, which is what rounded corners leave: any axis would
+  // do.
   if (!(solver.eigenvalues()[1] > 1e-12 * static_cast<double>(facets.size()))) return std::nullopt;
   return Vec3(solver.eigenvectors().col(0));
 }
@@ -94,6 +96,7 @@ std::optional<Surface> guess_cone(std::span<const Vec3> points,
   const auto axis = steady_direction(facets, about);
   if (!axis) return std::nullopt;
   const double sine = about.dot(*axis);
+  // Flatter than 0.8 degrees from a plane: the apex is where rounding puts it.
   if (!inclined_alike(facets, *axis, sine) || std::fabs(sine) > 0.9999) return std::nullopt;
   // The apex lies in all facet planes.
   Mat3 a = Mat3::Zero();

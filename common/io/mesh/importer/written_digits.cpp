@@ -83,6 +83,7 @@ bool has_digits(const std::vector<Triple>& coordinates, int digits, double slack
       const double steps = places < 0 ? x / power_of_ten(-places) : x * power_of_ten(places);
       const double whole = std::round(steps);
       if (std::abs(steps - whole) > slack * steps) return false;
+      // Its last digit is not zero: written with so many places, no fewer.
       if (std::fmod(whole, 10.0) > 0.5) found.push_back(x);
     }
   std::sort(found.begin(), found.end());

@@ -54,9 +54,11 @@ class Measure {
     Sample best{0.0, u, v, vec(p), false};
     Vec3 normal = vec(du).cross(vec(dv));
     double distance = (x - vec(p)).norm();
+    // Newton doubles the digits each step: three are enough, and a picometre is rounding.
     for (int step = 0; step < 3 && distance > 1e-9; ++step) {
       const Vec3 w = x - vec(p), a = vec(du), b = vec(dv);
       const double E = a.dot(a), F = a.dot(b), G = b.dot(b), D = E * G - F * F;
+      // Both ways along the face are one within rounding: no step.
       if (!(D > 1e-14 * E * G)) break;
       u += (w.dot(a) * G - w.dot(b) * F) / D;
       v += (w.dot(b) * E - w.dot(a) * F) / D;
@@ -85,6 +87,7 @@ bool split(FreeformMesh& mesh, std::size_t triangle, const Sample& at) {
   const Vec3 whole = area_vector(mesh.points[t[0]], mesh.points[t[1]], mesh.points[t[2]]);
   for (std::size_t k = 0; k < 3; ++k) {
     const Vec3 piece = area_vector(mesh.points[t[k]], mesh.points[t[(k + 1) % 3]], at.on_surface);
+    // A millionth of the triangle is a sliver: the point lies on its edge.
     if (!(piece.dot(whole) > 1e-6 * whole.squaredNorm())) return false;
   }
   const auto point = static_cast<std::uint32_t>(mesh.points.size());

@@ -116,6 +116,7 @@ Samples samples_of(const BRepAdaptor_Surface& adaptor, const TopoDS_Face& face, 
       adaptor.D1(u0 + (u1 - u0) * (i + 0.5) / per_side, v0 + (v1 - v0) * (j + 0.5) / per_side, p,
                  du, dv);
       gp_Vec normal = du ^ dv;
+      // A pole: it has no normal.
       if (normal.Magnitude() < 1e-14) continue;
       normal.Normalize();
       if (face.Orientation() == TopAbs_REVERSED) normal.Reverse();
@@ -148,6 +149,7 @@ class Fitter {
   std::size_t size() const { return coarse_.points.size(); }
 
   std::optional<RecognizedSurface> accept(const Surface& s) const {
+    // Beyond a hundred metres a face is as flat as its own rounding.
     if (!s.point.allFinite() || !(s.radius_mm < 1e5)) return std::nullopt;
     RecognizedSurface found{s, 0.0};
     for (std::size_t i = 0; i < fine_.points.size(); ++i) {
@@ -159,6 +161,7 @@ class Fitter {
   }
 
   std::optional<RecognizedSurface> plane() const {
+    // Normals within some 1.4 mrad of each other: accept() measures the rest.
     if (mean_normal_.norm() < 0.999999) return std::nullopt;
     Surface s;
     s.kind = SurfaceKind::kPlane;
@@ -234,6 +237,7 @@ class Fitter {
     const double inclined = mean_normal_.dot(s.axis);
     s.inward = inclined > 0.0;
     s.half_angle_rad = std::asin(std::min(1.0, std::fabs(inclined)));
+    // A cylinder, which is asked for by itself.
     if (s.half_angle_rad < 1e-4) return std::nullopt;
     return accept(s);
   }
