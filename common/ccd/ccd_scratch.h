@@ -24,6 +24,16 @@ struct CcdScratch {
   std::vector<Item> now;
   std::vector<Entry> entries;
   std::vector<Family> families;
+  /// A node of a tree about the axis of a screw: see ScrewBounds.
+  struct ScrewHull {
+    static constexpr int kDirections = 8;  ///< a thread has four faces, a nut and its flats more
+    enum State : std::uint8_t { kUnknown = 0, kKnown, kRoundAxis };
+    double lo[kDirections], hi[kDirections];  ///< along directions of the plane (r, zeta), mm
+    double theta_lo, theta_hi;                ///< rad, zeta is counted with the same turns
+    double least_r_mm;                        ///< no point is nearer to the axis
+    State state = kUnknown;                   ///< kRoundAxis: the axis is too near for an angle
+  };
+  std::vector<ScrewHull> hulls[2], triangle_hulls[2];
 };
 
 }  // namespace mortise

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "common/base/check.h"
 #include "common/ccd/distance.h"
 #include "common/ccd/leaf_pair.h"
 #include "common/ccd/pair_queue.h"
+#include "common/ccd/screw_bounds.h"
 #include "common/ccd/start_state.h"
 
 namespace mortise {
@@ -27,6 +29,8 @@ constexpr double kWorthWhile = 0.03;
 // that already lie near that depth and only slide.
 constexpr double kMayPress = 0.875;
 constexpr double kMaySlideDeeper = 0.125;
+// ScrewBounds makes a bound for each leaf; that costs half as much as a look at a pair of them.
+constexpr std::size_t kLeavesPerLook = 2;
 
 class Query {
  public:
@@ -35,6 +39,8 @@ class Query {
         scratch_(scratch),
         a_(*query.a),
         b_(*query.b),
+        tree_a_(a_.bvh()),
+        tree_b_(b_.bvh()),
         motion_(a_, query.motion_a, b_, query.motion_b),
         accuracy_mm_(std::max(query.accuracy_mm, kRoundingsPerAccuracy * motion_.rounding_mm())),
         kernels_(query.portable ? portable_kernels() : best_kernels()) {}
@@ -45,7 +51,7 @@ class Query {
   // 4. those that only touch at the start, if wanted, once more with distances below zero.
   FirstContact answer() {
     const double apart_mm =
-        motion_.at(0.0).p.norm() - a_.bvh().radius_mm - b_.bvh().radius_mm - motion_.rounding_mm();
+        motion_.at(0.0).p.norm() - tree_a_.radius_mm - tree_b_.radius_mm - motion_.rounding_mm();
     if (apart_mm - motion_.travel_mm() > query_.separation_mm + accuracy_mm_) {
       result_.state = ContactState::kFree;
       result_.t_clear = result_.t_contact = 1.0;
@@ -115,11 +121,12 @@ class Query {
   }
 
   void run(const Goal& goal) {
-    const Bvh& a = a_.bvh();
-    const Bvh& b = b_.bvh();
     CcdWork& work = result_.work;
-    PairQueue queue(a, b, scratch_);
-    Item root = root_pair(a, b);
+    PairQueue queue(tree_a_, tree_b_, scratch_);
+    screw_.reset();
+    screw_after_ =
+        work.leaf_tests + (tree_a_.leaves.size() + tree_b_.leaves.size()) / kLeavesPerLook;
+    Item root = root_pair(tree_a_, tree_b_);
     root.t = query_.t_from;
     queue.push_now(root);
     while (!queue.empty()) {
@@ -128,26 +135,46 @@ class Query {
         undecided(item.t);
         return;
       }
-      if (is_leaf_pair(item)) {
-        if (!advance_leaf(item, goal, queue)) return;
-        continue;
+      if (begins_with_screw(item.t)) {
+        // From the root once more: all pairs are free before this one.
+        screw_.emplace(motion_, tree_a_, tree_b_, goal.contact_mm, scratch_);
+        root.t = item.t;
+        queue.clear();
+        queue.push_now(root);
+      } else if (!is_leaf_pair(item)) {
+        open_pair(item, goal, queue);
+      } else if (!advance_leaf(item, goal, queue)) {
+        return;
       }
-      ++work.box_tests;
-      motion_.at(item.t);
-      alignas(32) float dt[Bvh::kWidth];
-      // At the start a pair within contact_mm must be seen.
-      const double taken_mm = item.t == 0.0 ? goal.contact_mm : goal.target_mm;
-      const bool opened_a = open_oriented(item, a, b, motion_, taken_mm, kernels_.box, dt);
-      queue.push_children(item, opened_a, dt);
     }
     result_.state = ContactState::kFree;
     result_.t_clear = result_.t_contact = 1.0;
     result_.distance_mm = 0.0;
   }
 
+  // What a screw leaves alone is asked when a query that turns far has cost as much as that costs.
+  bool begins_with_screw(double t) {
+    return !screw_.has_value() && result_.work.leaf_tests >= screw_after_ &&
+           ScrewBounds::applies(motion_, tree_a_, tree_b_, t);
+  }
+
+  void open_pair(const Item& item, const Goal& goal, PairQueue& queue) {
+    ++result_.work.box_tests;
+    alignas(32) float dt[Bvh::kWidth], kept[Bvh::kWidth];
+    if (screw_.has_value() && screw_->keeps_children(item, kept)) return;
+    motion_.at(item.t);
+    // At the start a pair within contact_mm must be seen.
+    const double taken_mm = item.t == 0.0 ? goal.contact_mm : goal.target_mm;
+    const bool opened_a =
+        open_oriented(item, tree_a_, tree_b_, motion_, taken_mm, kernels_.box, dt);
+    if (screw_.has_value())
+      for (int k = 0; k < Bvh::kWidth; ++k) dt[k] = std::max(dt[k], kept[k]);
+    queue.push_children(item, opened_a, dt);
+  }
+
   // Advances while the pair is the earliest of all. False when the query is decided.
   bool advance_leaf(const Item& item, const Goal& goal, PairQueue& queue) {
-    LeafPair leaves(a_.bvh(), item.a, b_.bvh(), item.b);
+    LeafPair leaves(tree_a_, item.a, tree_b_, item.b);
     double t = item.t;
     while (true) {
       motion_.at(t);
@@ -173,6 +200,8 @@ class Query {
         return false;
       }
       t = next;
+      if (screw_.has_value()) t = std::max(t, screw_->free_until(item.a, item.b, t));
+      if (t >= 1.0) return true;
       if (t > next_pair) {
         Item again = item;
         again.t = t;
@@ -199,9 +228,13 @@ class Query {
   CcdScratch& scratch_;
   const Solid& a_;
   const Solid& b_;
+  const Bvh& tree_a_;
+  const Bvh& tree_b_;
   PairMotion motion_;
   double accuracy_mm_;
   const Kernels& kernels_;
+  std::optional<ScrewBounds> screw_;
+  std::uint64_t screw_after_ = 0;  // looks at pairs of leaves
   FirstContact result_;
 };
 

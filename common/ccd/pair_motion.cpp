@@ -182,7 +182,7 @@ const PairState& PairMotion::at(double t) {
 
 // The rest of the tick needs no horizon where neither body turns farther in it.
 double PairMotion::horizon() const {
-  const double speed = std::max(path_a_.speed(), path_b_.speed());
+  const double speed = turning();
   return speed * (1.0 - state_.t) <= kHorizon_rad ? std::numeric_limits<double>::infinity()
                                                   : kHorizon_rad / speed;
 }

@@ -1,4 +1,6 @@
 #pragma once
+#include <algorithm>
+
 #include "common/ccd/first_contact.h"
 #include "common/ccd/kernels/kernels.h"
 
@@ -71,6 +73,8 @@ class PairMotion {
   const PairState& state() const { return state_; }
   bool turns_a() const { return path_a_.speed() > 0.0; }
   bool turns_b() const { return path_b_.speed() > 0.0; }
+  /// Of the body that turns faster, rad per tick.
+  double turning() const { return std::max(path_a_.speed(), path_b_.speed()); }
   /// Rounding of any coordinate or distance of the pair, mm: 32 u (L + D) (README, section 4).
   double rounding_mm() const { return rounding_mm_; }
   /// Rounding of a speed along a direction, mm per tick.

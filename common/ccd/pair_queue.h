@@ -17,9 +17,14 @@ class PairQueue {
 
   PairQueue(const Bvh& a, const Bvh& b, CcdScratch& scratch)
       : a_(a), b_(b), now_(scratch.now), heap_(scratch.entries), families_(scratch.families) {
+    clear();
+  }
+
+  void clear() {
     now_.clear();
     heap_.clear();
     families_.clear();
+    last_ = kNone;
   }
 
   bool empty() const { return now_.empty() && heap_.empty(); }
