@@ -133,9 +133,13 @@ Result<Recording> read_recording(const std::filesystem::path& file) {
   recording.agreements.push_back(agreement_of(world, {}));
   for (const auto& [hash, mesh] : log->meshes) recording.meshes[hash] = mesh_of(mesh);
   Recorder recorder(recording, world);
-  const auto replayed =
-      replay(world, *log, 1, [&](const ReplayedTick& tick) { recorder.take(tick); });
+  const auto replayed = replay(
+      world, *log, 1, [&](const ReplayedTick& tick) { recorder.take(tick); },
+      agreement_to_ask(*log));
   if (!replayed) return replayed.error();
+  if (!replayed->same_build)
+    recording.notes.push_back("recorded by another build (" + log->engine_version +
+                              "): compared within accuracy, not to the last bit");
   if (replayed->difference) {
     recording.notes.push_back(
         "it ends at tick " + std::to_string(replayed->difference->tick) +

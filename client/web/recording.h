@@ -56,7 +56,8 @@ struct Recording {
   std::vector<PartId> moved_between(std::uint64_t from, std::uint64_t to) const;
 };
 
-/// Reads a session log and computes it again, so that the recording is exact to the last bit. Where
+/// Reads a session log and computes it again, so that the recording is exact to the last bit; of a
+/// log of another build it is what this build computes, within accuracy, and a note says so. Where
 /// engine and log disagree, or a piece is missing, the recording ends, and a note says so. Takes
 /// about as long as the busy ticks took.
 Result<Recording> read_recording(const std::filesystem::path& file);

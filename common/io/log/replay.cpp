@@ -251,6 +251,11 @@ std::string difference_within_accuracy(const ReplayedTick& tick, double& largest
 
 }  // namespace
 
+Agreement agreement_to_ask(const SessionLog& log) {
+  return log.build_fingerprint == build_fingerprint() ? Agreement::kBitForBit
+                                                      : Agreement::kWithinAccuracy;
+}
+
 Result<ReplayReport> replay(World& world, const SessionLog& log, int threads,
                             const OnReplayedTick& on_tick, Agreement agreement,
                             const std::function<bool()>& stop) {
@@ -314,9 +319,7 @@ Result<ReplayReport> verify(const SessionLog& log, int threads,
   if (!scene) return scene.error();
   OnReplayedTick each;
   if (on_tick) each = [&](const ReplayedTick& tick) { on_tick(tick.world, tick.computed); };
-  const bool same_build = log.build_fingerprint == build_fingerprint();
-  return replay(scene->world, log, threads, each,
-                same_build ? Agreement::kBitForBit : Agreement::kWithinAccuracy);
+  return replay(scene->world, log, threads, each, agreement_to_ask(log));
 }
 
 }  // namespace mortise

@@ -67,6 +67,8 @@ enum class Agreement : std::uint8_t {
 /// As much as a part may be pressed deeper without being held (kDeepeningSlack_mm): what a replay
 /// may differ by without another answer. Below the tolerances of ISO 286 from IT3 on.
 inline constexpr double kOtherBuild_mm = 1e-3;
+/// As closely as this build can promise: bit for bit for a log that it wrote itself.
+Agreement agreement_to_ask(const SessionLog& log);
 
 /// Computes a logged session again tick by tick in `world`, as scene_of(log) made it, and compares
 /// refusals, events, state hashes and, on the build that wrote them, checkpoints. Ticks that the
@@ -87,7 +89,7 @@ struct Recomputation {
 Result<Recomputation> recompute(World& world, const SessionLog& log, int threads,
                                 const OnReplayedTick& on_tick);
 
-/// Replay in a world of its own: bit for bit on the build that wrote the log, else within accuracy.
+/// Replay in a world of its own, as agreement_to_ask() says.
 /// `on_tick` sees every computed tick, idle ones included, and the
 /// world after it.
 Result<ReplayReport> verify(

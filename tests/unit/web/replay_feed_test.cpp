@@ -6,6 +6,8 @@
 #include <filesystem>
 
 #include "client/client.h"
+#include "common/io/build_info.h"
+#include "common/io/log/log_chain.h"
 #include "common/io/log/session_log.h"
 #include "common/io/scenario/scene_load.h"
 #include "common/messages/memory_channel.h"
@@ -172,6 +174,20 @@ TEST(ReplayOfNoLog, IsRefusedInOneLine) {
   const auto none = read_recording("nowhere.mcap");
   ASSERT_FALSE(none);
   EXPECT_EQ(none.error().text.find('\n'), std::string::npos);
+}
+
+// What `mortise-replay verify` agrees with is shown to its end.
+TEST(ReplayOfAnotherBuild, IsShownToItsEnd) {
+  const fs::path golden = fs::path(MORTISE_SOURCE_DIR) / "tests" / "golden";
+  for (const char* log : {"thin_wall.mcap", "thin_wall_slide.mcap", "before/0.2.0/clashes.mcap"}) {
+    const auto written = read_session(golden / log);
+    const auto shown = read_recording(golden / log);
+    ASSERT_TRUE(written && shown) << log;
+    EXPECT_EQ(shown->last_tick, written->ticks.back().tick) << log;
+    if (written->build_fingerprint == build_fingerprint()) continue;
+    ASSERT_EQ(shown->notes.size(), 1u) << testing::PrintToString(shown->notes);
+    EXPECT_EQ(shown->notes[0].rfind("recorded by another build", 0), 0u) << shown->notes[0];
+  }
 }
 
 TEST_F(ReplayOfASession, TheTimelineTellsDepthsAndTickTimes) {
