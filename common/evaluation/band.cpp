@@ -231,4 +231,12 @@ SurfaceBand with_statements(const SurfaceBand& band, const Solid& solid, const F
   return stated;
 }
 
+SurfaceBand grown(const SurfaceBand& band, const Solid& solid, double by_mm) {
+  SurfaceBand larger = band;
+  for (SurfaceBand::Face& face : larger.faces)
+    face.tolerance_mm = face.tolerance_mm + Interval{by_mm, by_mm};
+  summarize(larger, solid);
+  return larger;
+}
+
 }  // namespace mortise

@@ -33,4 +33,7 @@ SurfaceBand build_band(const BandInput& input);
 SurfaceBand with_statements(const SurfaceBand& band, const Solid& solid, const FaceStatement& rest,
                             std::span<const FaceStatement> of_feature);
 
+/// All faces of the band farther out, by so much (mm, >= 0).
+SurfaceBand grown(const SurfaceBand& band, const Solid& solid, double by_mm);
+
 }  // namespace mortise

@@ -53,44 +53,6 @@ double residual_of(const Part& part) {
   return most;
 }
 
-// Least outward offset of a band: how far inside of the mesh the real surface may be.
-double inward_mm(const SurfaceBand& band) {
-  double least = 0.0;
-  for (const SurfaceBand::Face& face : band.faces)
-    least = std::min(least, face.deviation_mm.lo + face.tolerance_mm.lo);
-  return -least;
-}
-
-// Pairs nearer than they must be, the nearest first, but for those that met.
-std::vector<NearPair> near_pairs(const World& world, double min_gap_mm,
-                                 const std::map<PairIds, double>& of_pairs_mm,
-                                 const std::set<PairIds>& met) {
-  std::vector<Box> boxes(world.parts.size());
-  for (std::size_t i = 0; i < boxes.size(); ++i)
-    for (const Vec3& x : world.parts[i].solid->mesh().points_mm)
-      boxes[i].add(world.parts[i].X_WP * x);
-  std::vector<NearPair> near;
-  CcdScratch scratch;
-  for (std::size_t i = 0; i < boxes.size(); ++i)
-    for (std::size_t j = i + 1; j < boxes.size(); ++j) {
-      const Part &a = world.parts[i], &b = world.parts[j];
-      const double outward_mm = a.band.farthest_mm() + b.band.farthest_mm();
-      const auto own = of_pairs_mm.find({a.id, b.id});
-      const double required_mm = own == of_pairs_mm.end() ? min_gap_mm : own->second;
-      if (!(required_mm > 0.0)) continue;
-      const double reach_mm = required_mm + outward_mm;
-      if (!boxes[i].grown(reach_mm).overlaps(boxes[j]) || met.contains({a.id, b.id})) continue;
-      const DistanceResult found = distance(*a.solid, a.X_WP, *b.solid, b.X_WP, scratch, reach_mm);
-      if (!found.within_limit) continue;
-      const Interval gap{found.distance_mm - outward_mm,
-                         found.distance_mm + inward_mm(a.band) + inward_mm(b.band)};
-      if (gap.lo < required_mm) near.push_back({a.id, b.id, gap, required_mm});
-    }
-  std::sort(near.begin(), near.end(),
-            [](const NearPair& x, const NearPair& y) { return x.gap_mm.lo < y.gap_mm.lo; });
-  return near;
-}
-
 bool states_tolerance(const Part& of, const std::string& face, const PairRule* rule, bool is_a) {
   const SurfaceBand* band = &of.band;
   if (rule != nullptr && (is_a ? rule->band_a : rule->band_b))
@@ -408,11 +370,13 @@ class Checker {
     const std::map<PairIds, double>& of_pairs_mm = opened_.scene.min_gaps_mm;
     report_.asks_gaps = gap_mm > 0.0 || !of_pairs_mm.empty();
     if (!report_.asks_gaps) return;
-    std::set<PairIds> met;
+    NearQuery query;
+    query.required_mm = gap_mm;
+    query.of_pairs_mm = of_pairs_mm;
     for (const CheckedPair& pair : report_.pairs)
       for (const PairIds& ids : pair.all)
-        if (pair.collision_class != CollisionClass::kNone) met.insert(ids);
-    report_.near = near_pairs(world_, gap_mm, of_pairs_mm, met);
+        if (pair.collision_class != CollisionClass::kNone) query.left_out.insert(ids);
+    report_.near = near_pairs(world_, query);
   }
 
   OpenedScene& opened_;

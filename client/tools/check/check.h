@@ -6,6 +6,7 @@
 #include "client/tools/check/mating.h"
 #include "common/io/scenario/open_scene.h"
 #include "common/session/tick/judge_world.h"
+#include "common/session/tick/pair_gap.h"
 
 namespace mortise {
 
@@ -33,13 +34,6 @@ struct CheckedPair {
   bool not_examined = false;
   bool muted = false;  ///< inside of a sub-assembly that is bought
   std::string inside;  ///< the product that all of them lie in, or empty
-};
-
-/// A pair that is nearer than asked.
-struct NearPair {
-  PartId a, b;
-  Interval gap_mm;  ///< of the real surfaces
-  double required_mm = 0.0;
 };
 
 struct CheckCounts {
