@@ -10,9 +10,6 @@
 namespace mortise {
 namespace {
 
-// A kept log has a kilobyte or two for each: 100 MB.
-constexpr std::size_t kMostKeptTicks = 50'000;
-
 // An end has no region any more, and a review nothing new of one.
 bool is_judged(const ClashEvent& event) {
   return event.kind == ClashEvent::Kind::kBegin || event.kind == ClashEvent::Kind::kChange;
@@ -43,18 +40,6 @@ Result<std::string> clash_picture(const SessionLog& log, const ClashMoment& want
                              Canvas::Format::kSvg);
   });
   if (!done) return done.error();
-  return drawn;
-}
-
-Result<std::string> ClashPictures::draw(const ClashMoment& wanted) {
-  const bool has_it = log_ && !log_->ticks.empty() && log_->ticks.back().tick >= wanted.until_tick;
-  if (!has_it && !(log_ && log_->complete)) {
-    auto read = read_();
-    if (!read) return read.error();
-    log_ = std::move(*read);
-  }
-  Result<std::string> drawn = clash_picture(*log_, wanted);
-  if (log_->ticks.size() > kMostKeptTicks) log_.reset();
   return drawn;
 }
 

@@ -116,4 +116,15 @@ Status for_moments(const SessionLog& log, const EventKeys& wanted,
   return ok();
 }
 
+Result<LoadedScene> scene_after(const SessionLog& log, std::uint64_t tick) {
+  auto scene = scene_of(log);
+  if (!scene) return scene;
+  const EventKeys none;
+  const std::function<void(const Moment&)> visit;
+  Walk walk(scene->world, none, visit);
+  for (const TickRecord& record : log.ticks)
+    if (record.tick <= tick) walk.take(record);
+  return scene;
+}
+
 }  // namespace mortise

@@ -5,6 +5,7 @@
 
 #include "common/base/result.h"
 #include "common/io/log/session_log_read.h"
+#include "common/io/scenario/scene_load.h"
 #include "common/session/world/world.h"
 
 namespace mortise {
@@ -25,5 +26,8 @@ using EventKeys = std::set<std::pair<std::uint64_t, ClashId>>;
 /// scene of the log cannot be loaded. Costs the scene and one pass.
 Status for_moments(const SessionLog& log, const EventKeys& wanted,
                    const std::function<void(const Moment&)>& visit);
+
+/// The scene as the log has it after a tick, or at its end, in the same way.
+Result<LoadedScene> scene_after(const SessionLog& log, std::uint64_t tick);
 
 }  // namespace mortise

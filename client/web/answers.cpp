@@ -1,5 +1,6 @@
 #include "client/web/answers.h"
 
+#include <algorithm>
 #include <charconv>
 #include <optional>
 
@@ -54,6 +55,28 @@ std::optional<WantedPicture> picture_of(std::string_view target) {
   if (!clash) return std::nullopt;
   wanted.clash = *clash;
   return wanted;
+}
+
+constexpr std::string_view kGap = "/gap?";
+
+// "/gap?a=3&b=5", "/gap?a=3&b=5&tick=812"
+std::optional<WantedGap> gap_of(std::string_view target) {
+  target.remove_prefix(kGap.size());
+  WantedGap wanted;
+  const auto take = [&](std::string_view key) -> std::optional<std::string_view> {
+    if (!target.starts_with(key)) return std::nullopt;
+    const std::string_view value = target.substr(key.size(), target.find('&') - key.size());
+    target.remove_prefix(std::min(target.size(), key.size() + value.size() + 1));
+    return value;
+  };
+  const auto a = take("a="), b = take("b=");
+  const auto tick = target.empty() ? std::nullopt : take("tick=");
+  if (!a || !b || !target.empty()) return std::nullopt;
+  if (tick && !(wanted.tick = number_of<std::uint64_t>(*tick))) return std::nullopt;
+  wanted.a = number_of<std::uint32_t>(*a).value_or(0);
+  wanted.b = number_of<std::uint32_t>(*b).value_or(0);
+  return wanted.a != 0 && wanted.b != 0 && wanted.a != wanted.b ? std::optional(wanted)
+                                                                : std::nullopt;
 }
 
 Answer mesh(GatewayState& state, std::string_view path) {
@@ -146,6 +169,12 @@ std::optional<Answer> without_token(GatewayState& state, const Request& request,
   return answer;
 }
 
+// How an answer begins that tells why there is none; empty: of files.
+const char* no_answer(Download download) {
+  if (download == Download::kPicture) return "no picture: ";
+  return download == Download::kGap ? "no gap: " : "";
+}
+
 Answer wrong_host() {
   return sentence(status::misdirected_request,
                   "requested under a foreign host name; --name allows it");
@@ -213,6 +242,7 @@ Download download_of(const Request& request) {
   if (request.target() == "/report.html") return Download::kReport;
   if (request.target() == "/scenario.zip") return Download::kScenario;
   if (picture_of(view_of(request.target()))) return Download::kPicture;
+  if (view_of(request.target()).starts_with(kGap)) return Download::kGap;
   return request.target() == "/session.mcap" ? Download::kLog : Download::kNone;
 }
 
@@ -224,6 +254,11 @@ ReportMaker::Make maker_of(Download download, const Request& request,
       return make(wanted);
     };
   }
+  if (download == Download::kGap) {
+    const auto wanted = gap_of(view_of(request.target()));
+    if (!options.gap || !wanted) return {};
+    return [make = options.gap, wanted = *wanted] { return make(wanted); };
+  }
   if (download == Download::kScenario) return options.scenario;
   return download == Download::kLog ? options.log : options.report;
 }
@@ -233,11 +268,12 @@ std::optional<Answer> refusal_of(Download download, GatewayState& state, const R
   ++state.traffic.requests;
   if (!is_own(state, request, from)) return wrong_host();
   if (auto refused = without_token(state, request, from)) return refused;
+  if (download == Download::kGap && !gap_of(view_of(request.target())))
+    return sentence(status::bad_request, "no gap: /gap?a=PART&b=PART wants two parts");
   if (!maker_of(download, request, state.options))
     return sentence(status::not_found,
-                    download == Download::kPicture
-                        ? "no picture: this gateway knows no log; start it with --read-log FILE"
-                        : "this gateway knows no log; see --log");
+                    std::string(no_answer(download)) +
+                        "this gateway knows no log; start it with --read-log FILE");
   if (!state.reports.is_busy() && !state.ending) return std::nullopt;
   Answer answer =
       sentence(status::service_unavailable, "another download is being made; ask again");
@@ -246,10 +282,12 @@ std::optional<Answer> refusal_of(Download download, GatewayState& state, const R
 }
 
 Answer answer_with(Download download, Result<std::string> bytes) {
-  if (!bytes && bytes.error().code == Code::kNotFound && download == Download::kPicture)
-    return sentence(status::not_found, "no picture: " + bytes.error().text);
+  if (!bytes && bytes.error().code == Code::kNotFound && *no_answer(download) != '\0')
+    return sentence(status::not_found, no_answer(download) + bytes.error().text);
   if (!bytes) return sentence(status::internal_server_error, "not made: " + bytes.error().text);
   auto body = std::make_shared<const std::string>(std::move(*bytes));
+  if (download == Download::kGap)
+    return {status::ok, kJson, std::move(body), {{"Cache-Control", "no-store"}}};
   if (download == Download::kPicture)
     return {status::ok,
             "image/svg+xml",

@@ -41,8 +41,8 @@ Answer answer_to_file(GatewayState& state, const std::string& ticket, std::vecto
 /// The report takes seconds, so another thread makes it (report_maker.h). refusal_of() gives
 /// the answer when there is none now.
 /// The same holds for the session's log, for the scenario that it is saved as, and for the picture
-/// of a clash.
-enum class Download : std::uint8_t { kNone = 0, kReport, kLog, kScenario, kPicture };
+/// of a clash or the gap of two parts.
+enum class Download : std::uint8_t { kNone = 0, kReport, kLog, kScenario, kPicture, kGap };
 Download download_of(const Request& request);
 /// Empty: there is no log to make it of.
 ReportMaker::Make maker_of(Download download, const Request& request,

@@ -20,6 +20,12 @@ struct WantedPicture {
   std::optional<std::uint64_t> until_tick;
 };
 
+/// Two parts, as they stand after a tick, or now.
+struct WantedGap {
+  std::uint32_t a = 0, b = 0;
+  std::optional<std::uint64_t> tick;
+};
+
 struct GatewayOptions {
   std::string address = "127.0.0.1";  ///< IPv4 to listen on
   int port = 0;                       ///< 0: a free one
@@ -36,6 +42,8 @@ struct GatewayOptions {
   std::function<Result<std::string>()> scenario;
   /// The same of a clash's picture, as SVG; kNotFound where the log does not have that clash.
   std::function<Result<std::string>(const WantedPicture&)> picture;
+  /// The same of the gap of two parts, as JSON; kNotFound where one of them is not there.
+  std::function<Result<std::string>(const WantedGap&)> gap;
   double turn_s = 0.004;  ///< time between two turns of the feed while a browser is connected
 };
 

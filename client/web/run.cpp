@@ -7,10 +7,13 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <limits>
 #include <memory>
 #include <thread>
 
 #include "client/report/clash_picture.h"
+#include "client/report/gap_answer.h"
+#include "client/report/log_so_far.h"
 #include "client/report/report.h"
 #include "client/saved/saved_session.h"
 #include "client/web/addresses.h"
@@ -108,12 +111,21 @@ Result<std::string> scenario_of(const std::string& log) try {
   return fail(Code::kRuntime, std::string("the session cannot be saved: ") + e.what());
 }
 
-Result<std::string> picture_of(ClashPictures& pictures, const WantedPicture& wanted) try {
+Result<std::string> picture_of(LogSoFar& log, const WantedPicture& wanted) try {
   ClashMoment moment{ClashId{wanted.clash}};
   if (wanted.until_tick) moment.until_tick = *wanted.until_tick;
-  return pictures.draw(moment);
+  return log.answer(moment.until_tick,
+                    [&](const SessionLog& read) { return clash_picture(read, moment); });
 } catch (const std::exception& e) {  // memory
   return fail(Code::kRuntime, std::string("the clash cannot be drawn: ") + e.what());
+}
+
+Result<std::string> gap_of(LogSoFar& log, const WantedGap& wanted) try {
+  const GapMoment moment{PartId{wanted.a}, PartId{wanted.b},
+                         wanted.tick.value_or(std::numeric_limits<std::uint64_t>::max())};
+  return log.answer(moment.tick, [&](const SessionLog& read) { return gap_answer(read, moment); });
+} catch (const std::exception& e) {  // memory
+  return fail(Code::kRuntime, std::string("the gap cannot be computed: ") + e.what());
 }
 
 // Serves a feed until a signal comes.
@@ -127,13 +139,14 @@ int serve(const WebOptions& options, Feed& feed, StopSignal& stop_signal) {
       if (is_written) await_writing(log);
       return bytes_of(log);
     };
-    const auto pictures = std::make_shared<ClashPictures>([log, is_written] {
+    const auto so_far = std::make_shared<LogSoFar>([log, is_written] {
       if (is_written) await_writing(log);
       return read_session(log);
     });
-    gateway_options.picture = [pictures](const WantedPicture& wanted) {
-      return picture_of(*pictures, wanted);
+    gateway_options.picture = [so_far](const WantedPicture& wanted) {
+      return picture_of(*so_far, wanted);
     };
+    gateway_options.gap = [so_far](const WantedGap& wanted) { return gap_of(*so_far, wanted); };
     gateway_options.scenario = [log, is_written] {
       if (is_written) await_writing(log);
       return scenario_of(log);

@@ -75,6 +75,34 @@ TEST_F(GatewayFixture, GivesThePictureOfAClashToWhoHasAToken) {
     EXPECT_EQ(http_request(port, wrong, bearer).status, 404) << wrong;
 }
 
+TEST_F(GatewayFixture, GivesTheGapOfTwoPartsToWhoHasAToken) {
+  options.gap = [](const web::WantedGap& wanted) -> Result<std::string> {
+    if (wanted.b == 9) return fail(Code::kNotFound, "the session has no part 9 then");
+    return std::to_string(wanted.a) + "-" + std::to_string(wanted.b) + "@" +
+           (wanted.tick ? std::to_string(*wanted.tick) : "now");
+  };
+  serve();
+  const Fields bearer = {{"Authorization", "Bearer " + tokens.observer}};
+  EXPECT_EQ(http_request(port, "/gap?a=1&b=2").status, 401);
+  EXPECT_EQ(http_request(port, "/gap?a=1&b=2", {{"Host", "evil.example"}}).status, 421);
+  const auto answer = http_request(port, "/gap?a=1&b=2", bearer);
+  EXPECT_EQ(answer.status, 200);
+  EXPECT_EQ(answer.body, "1-2@now");
+  EXPECT_EQ(answer.field("Content-Type"), "application/json");
+  EXPECT_EQ(http_request(port, "/gap?a=5&b=3&tick=812", bearer).body, "5-3@812");
+  const auto missing = http_request(port, "/gap?a=1&b=9", bearer);
+  EXPECT_EQ(missing.status, 404);
+  EXPECT_EQ(missing.body, "no gap: the session has no part 9 then\n");
+  for (const char* wrong :
+       {"/gap?", "/gap?a=1", "/gap?a=1&b=", "/gap?a=1&b=1", "/gap?a=0&b=1", "/gap?a=-1&b=2",
+        "/gap?a=x&b=2", "/gap?a=1&b=99999999999", "/gap?a=1&b=2&tick=", "/gap?a=1&b=2&tick=1x",
+        "/gap?a=1&b=2&tick=1&c=3", "/gap?b=2&a=1", "/gap?a=1&b=2&a=3"}) {
+    const auto refused = http_request(port, wrong, bearer);
+    EXPECT_EQ(refused.status, 400) << wrong;
+    EXPECT_EQ(std::count(refused.body.begin(), refused.body.end(), '\n'), 1) << refused.body;
+  }
+}
+
 TEST_F(GatewayFixture, SaysThatThereIsNoReport) {
   serve();
   const Fields bearer = {{"Authorization", "Bearer " + tokens.designer}};
@@ -82,6 +110,9 @@ TEST_F(GatewayFixture, SaysThatThereIsNoReport) {
   const auto picture = http_request(port, "/clash/1.svg", bearer);
   EXPECT_EQ(picture.status, 404);
   EXPECT_EQ(picture.body.find("no picture: this gateway knows no log"), 0u) << picture.body;
+  const auto gap = http_request(port, "/gap?a=1&b=2", bearer);
+  EXPECT_EQ(gap.status, 404);
+  EXPECT_EQ(gap.body.find("no gap: this gateway knows no log"), 0u) << gap.body;
 }
 
 TEST_F(GatewayFixture, TwoPagesJoinMoveAndSeeTheSameClash) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "client/report/log_so_far.h"
 #include "tests/unit/replay/played.h"
 
 namespace mortise {
@@ -63,21 +64,25 @@ TEST_F(ClashPicture, ALogIsReadAgainOnlyForAMomentBehindWhatWasRead) {
   const ClashEvent& first = events_.front();
   int reads = 0;
   log_.complete = false;  // as while its server writes it
-  ClashPictures pictures([&] {
+  LogSoFar so_far([&] {
     ++reads;
     return log_;
   });
-  const auto begun = pictures.draw({first.clash, first.tick});
+  const auto draw = [&](const ClashMoment& moment) {
+    return so_far.answer(moment.until_tick,
+                         [&](const SessionLog& log) { return clash_picture(log, moment); });
+  };
+  const auto begun = draw({first.clash, first.tick});
   ASSERT_TRUE(begun) << begun.error().text;
-  EXPECT_EQ(*pictures.draw({first.clash, first.tick}), *begun);
-  EXPECT_FALSE(pictures.draw({first.clash, first.tick - 1}));
+  EXPECT_EQ(*draw({first.clash, first.tick}), *begun);
+  EXPECT_FALSE(draw({first.clash, first.tick - 1}));
   EXPECT_EQ(reads, 1);
-  EXPECT_TRUE(pictures.draw({first.clash, log_.ticks.back().tick + 1}));
-  EXPECT_TRUE(pictures.draw({first.clash}));
+  EXPECT_TRUE(draw({first.clash, log_.ticks.back().tick + 1}));
+  EXPECT_TRUE(draw({first.clash}));
   EXPECT_EQ(reads, 3);
   log_.complete = true;
-  EXPECT_TRUE(pictures.draw({first.clash}));
-  EXPECT_TRUE(pictures.draw({first.clash}));
+  EXPECT_TRUE(draw({first.clash}));
+  EXPECT_TRUE(draw({first.clash}));
   EXPECT_EQ(reads, 4) << "it has ended: nothing more comes";
 }
 
