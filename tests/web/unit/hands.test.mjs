@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import { test } from 'node:test';
 import { Choice } from '../../../client/web/page/session/choice.js';
-import { between, ofOne, realGap, realGapSaid } from '../../../client/web/page/session/measure.js';
+import { between, gapSaid, ofOne, realGap, realGapSaid } from '../../../client/web/page/session/measure.js';
 import { Mover } from '../../../client/web/page/session/mover.js';
 import { Session } from '../../../client/web/page/session/session.js';
 import { Stops } from '../../../client/web/page/session/stops.js';
@@ -26,6 +26,8 @@ test('the real gap of a judged pair is an interval: Ø20 H7/g6 is 7 to 41 µm in
   near(realGap(g6)[0], 0.0035);
   near(realGap(g6)[1], 0.0205);
   assert.equal(realGapSaid(g6), 'real gap 3.5 µm to 20.5 µm');
+  assert.equal(gapSaid({ mesh_mm: 0.1, real_mm: [0.079, 0.121] }), '0.100 mm (0.079 to 0.121)');
+  assert.equal(gapSaid({ mesh_mm: 0.0125, real_mm: [0.0035, 0.0205] }), '0.0125 mm (0.0035 to 0.0205)', 'fits are of micrometres');
   assert.equal(realGapSaid({ ...g6, explanation: 'fake up to 51.6 µm' }), 'real gap at least 3.5 µm', 'an end that was left open says nothing');
   assert.equal(realGapSaid({ delta: [0.4, 0.5], fake_below: 0, real_above: 0.1, explanation: 'real above 100.0 µm' }), 'real gap -500.0 µm to -300.0 µm');
 });

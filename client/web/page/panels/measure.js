@@ -4,6 +4,7 @@ import { between, ofOne, realGapSaid } from '../session/measure.js';
 import { placed, rotate } from '../session/motion.js';
 import { bracket, plain, small } from '../session/words.js';
 import { featureAt } from '../view/feature_at.js';
+import { makeAskedGap } from './asked_gap.js';
 import { byId, el, setText } from './dom.js';
 
 /** @typedef {import('../session/session.js').Part} Part */
@@ -11,7 +12,9 @@ import { byId, el, setText } from './dom.js';
 /** @typedef {{part: Part, feature: Feature | null, point: import('../session/motion.js').Vec3}} Pick point in the frame of the part */
 
 /** @param {import('../desk.js').Desk} desk */
-export function makeMeasure({ session, choice, labels, stage }) {
+export function makeMeasure(desk) {
+  const { session, choice, labels, stage } = desk;
+  const gap = makeAskedGap(desk, refresh);
   const box = byId('measure_bar');
   const text = el('span', { role: 'status' });
   const again = el('button', { type: 'button', onclick: clear }, 'Measure anew');
@@ -26,6 +29,7 @@ export function makeMeasure({ session, choice, labels, stage }) {
 
   function clear() {
     picks = [];
+    gap.drop();
     refresh();
   }
 
@@ -49,13 +53,13 @@ export function makeMeasure({ session, choice, labels, stage }) {
   const nameOf = (/** @type {Pick} */ { part, feature }) => `${part.name}${feature ? ` ${plain(feature.name)}` : ', a point'}`;
   const figure = (/** @type {import('../session/measure.js').Figure} */ { name, mm, rad }) => `${name} ${rad === undefined ? small(mm) : `${((rad * 180) / Math.PI).toFixed(4)}°`}`;
 
-  /** What the session has judged of the two parts: true surfaces, not meshes. */
+  /** Of the two parts as real bodies: what the session has judged of them, or how far they are apart. */
   function judged() {
     if (picks.length < 2) return '';
     const [a, b] = picks.map(({ part }) => part.id);
     const clash = session.openClashes().find((c) => (c.a === a && c.b === b) || (c.a === b && c.b === a));
     if (a === b) return '';
-    if (!clash) return ' Real gap not known: the session judges parts that meet, or are nearer than their tolerances reach.';
+    if (!clash) return gap.between(picks[0].part, picks[1].part);
     return ` The session: overlap ${bracket(clash.delta)}, ${realGapSaid(clash)} (clash #${clash.clash}).`;
   }
 
@@ -90,6 +94,6 @@ export function makeMeasure({ session, choice, labels, stage }) {
   labels.sources.push(() => (choice.tool === 'measure' ? picks.map((p, i) => ({ at: new THREE.Vector3(...placedPick(p).at), text: `${i + 1}` })) : []));
   choice.on('tool', clear);
   session.on('scene', clear);
-  session.on('poses', () => picks.length === 2 && refresh());
+  for (const what of /** @type {const} */ (['poses', 'standing'])) session.on(what, () => picks.length === 2 && refresh());
   return { pick };
 }

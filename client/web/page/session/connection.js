@@ -163,4 +163,9 @@ export class Connection {
   async picture(clash, tick) {
     return (await this.#get(`clash/${clash}.svg?tick=${tick}`, 'the picture')).text();
   }
+
+  /** Of two parts. @param {number} a @param {number} b @param {number | null} tick as they stood after it; null: now @returns {Promise<{mesh_mm: number, real_mm: [number, number]}>} */
+  async gap(a, b, tick) {
+    return (await this.#get(`gap?a=${a}&b=${b}${tick === null ? '' : `&tick=${tick}`}`, 'the gap')).json();
+  }
 }

@@ -43,6 +43,18 @@ export function realGapSaid(clash) {
   return hi === null ? `real gap at least ${small(lo)}` : `real gap ${small(lo)} to ${small(hi)}`;
 }
 
+/** Intervals narrower than this are told to a tenth of a micrometre, mm. */
+const NARROW_MM = 0.02;
+
+/**
+ * How far two parts are apart: their meshes, and in brackets the least and the most that their real surfaces may be.
+ * @param {{mesh_mm: number, real_mm: [number, number]}} gap as the gateway tells it @returns {string} "0.100 mm (0.079 to 0.121)"
+ */
+export function gapSaid({ mesh_mm, real_mm: [lo, hi] }) {
+  const told = (/** @type {number} */ mm) => mm.toFixed(hi - lo < NARROW_MM ? 4 : 3).replace(/^-(0\.0+)$/, '$1');
+  return `${told(mesh_mm)} mm (${told(lo)} to ${told(hi)})`;
+}
+
 /** What one of them has by itself. @param {Picked} picked @returns {Figure[]} */
 export function ofOne(picked) {
   return isRound(picked) ? [{ name: 'Diameter', mm: 2 * picked.radius }] : [];
