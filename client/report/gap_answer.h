@@ -17,7 +17,7 @@ struct GapMoment {
 /// Their gap as JSON: `a`, `b`, `tick`, `mesh_mm`, `real_mm` [lo, hi] (see pair_gap), `verdict`: is
 /// it that of a verdict? Poses of moved parts are those of the log, and the interval is wider by
 /// what these are rounded. kNotFound: there is no such part then. Costs loading the scene, one
-/// pass, and up to six overlaps.
+/// pass, and the overlaps of pair_gap.
 Result<std::string> gap_answer(const SessionLog& log, const GapMoment& wanted);
 
 }  // namespace mortise

@@ -76,20 +76,32 @@ class ApartPair {
   }
 
   // 2. A part that is pushed by s and then certainly overlaps by c was no farther away than s - c.
-  // Faces do at the first push, edges and corners, which travel farther, at a later one.
+  // Faces do at the first push, edges and corners, which travel farther, at a later one, and edges
+  // in one plane, which slide past each other, once they are pushed out of it.
   double when_pushed() {
     if (!(found_.distance_mm > kApart_mm)) return kInfinity;
-    for (double times = 1.0; times <= kMostPushed; times *= 2.0) {
-      const double s_mm = found_.distance_mm + times * inward_both_mm() + kPushed_mm;
-      OverlapQuery pushed = overlap();
-      pushed.X_WB.p += s_mm / found_.distance_mm * (found_.point_a_W - found_.point_b_W);
-      double most_mm = kInfinity;
-      for (const OverlapRegion& region : find_overlap(pushed, scratch_).regions)
-        if (region.has_witness && region.certain_mm.lo > 0.0)
-          most_mm = std::min(most_mm, s_mm - region.certain_mm.lo);
-      if (most_mm < kInfinity) return most_mm;
-    }
+    const Part &a = *query_.a, &b = *query_.b;
+    const Vec3 nearest = (found_.point_a_W - found_.point_b_W) / found_.distance_mm;
+    const Vec3 middle =
+        (a.X_WP * a.solid->sphere().center_mm - b.X_WP * b.solid->sphere().center_mm).normalized();
+    for (const double aside : {0.0, 1.0})
+      for (double times = 1.0; times <= kMostPushed; times *= 2.0) {
+        const double more_mm = times * inward_both_mm() + kPushed_mm;
+        const double most_mm =
+            when_pushed_by((found_.distance_mm + more_mm) * nearest + aside * more_mm * middle);
+        if (most_mm < kInfinity) return most_mm;
+      }
     return kInfinity;
+  }
+
+  double when_pushed_by(const Vec3& shift_mm) {
+    OverlapQuery pushed = overlap();
+    pushed.X_WB.p += shift_mm;
+    double most_mm = kInfinity;
+    for (const OverlapRegion& region : find_overlap(pushed, scratch_).regions)
+      if (region.has_witness && region.certain_mm.lo > 0.0)
+        most_mm = std::min(most_mm, shift_mm.norm() - region.certain_mm.lo);
+    return most_mm;
   }
 
   // 3. Parts that are grown by g in all and then overlap by p at most were apart by g - p at least.

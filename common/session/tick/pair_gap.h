@@ -21,8 +21,8 @@ struct PairGap {
 /// The gap of two parts with the bands of their rule, or their own. Of a pair with a verdict it is
 /// [fake_below - delta.hi, real_above - delta.lo], the least of its regions. Else implies: no
 /// admissible real surfaces are nearer than real_mm.lo, and all have points that are no farther
-/// apart than real_mm.hi (see README, section 8). `work_cap`: of each of up to six overlaps, see
-/// OverlapQuery; beyond it the interval is wider.
+/// apart than real_mm.hi (see README, section 8). `work_cap`: of each of up to ten overlaps, mostly
+/// three, see OverlapQuery; beyond it the interval is wider.
 PairGap pair_gap(const Part& a, const Part& b, const PairRule* rule, std::uint64_t work_cap,
                  CcdScratch& scratch);
 

@@ -92,6 +92,25 @@ TEST_F(BlockOverPlate, ThatMeetsItIsWhatItsVerdictSays) {
   }
 }
 
+// Two blocks whose edges face each other in one plane: pushed along it they slide past each other.
+TEST(EdgesInOnePlane, HaveAGapAsNarrowAsTheirTolerances) {
+  SessionBuilder session;
+  session.add("below", box_mesh(Vec3(-10, -10, -10), Vec3(10, 10, 0)), Pose(), false);
+  session.add("above", box_mesh(Vec3(10.5, -10, 0), Vec3(30, 10, 10)), Pose(), true);
+  for (const PartId id : {PartId{1}, PartId{2}}) {
+    session.set_tolerance(id, 0.01);
+    Part& part = *session.world.find(id);
+    part.band = grown(part.band, *part.solid, 0.0);
+  }
+  const PairGap gap = gap_of(session.world);
+  EXPECT_NEAR(gap.mesh_mm, 0.5, 1e-9);
+  // Both edges come nearer by 0.01, and none goes up or down by more.
+  EXPECT_LE(gap.real_mm.lo, 0.48 + 1e-9);
+  EXPECT_GE(gap.real_mm.lo, 0.44);
+  EXPECT_GE(gap.real_mm.hi, std::hypot(0.52, 0.02) - 1e-9);
+  EXPECT_LE(gap.real_mm.hi, 0.65);
+}
+
 // Meshes of 32 facets are up to 48 um off; a shaft in its bore is as near as their radii say.
 TEST(ShaftInItsBore, HasTheGapOfItsFitWhateverItsFacets) {
   const SolidPtr shaft = solid(peg({10, -5, 15, 32, 1, 0.05}));
