@@ -1,5 +1,5 @@
 // Eight pairs of boxes, a pair a lane. Included by kernels_impl.h.
-#include "common/ccd/kernels/lanes.h"
+#include "common/geometry/kernels/lanes.h"
 
 namespace boxes {
 

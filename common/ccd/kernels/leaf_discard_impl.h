@@ -1,5 +1,5 @@
 // Sixteen pairs of triangles, a triangle a lane. Included by kernels_impl.h.
-#include "common/ccd/kernels/lanes.h"
+#include "common/geometry/kernels/lanes.h"
 
 namespace discards {
 

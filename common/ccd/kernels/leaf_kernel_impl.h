@@ -1,6 +1,6 @@
 // Four triangles against four, a triangle a lane. Included by kernels_impl.h. No operation here may
 // raise invalid, overflow or division by zero: divisors are chosen before dividing.
-#include "common/ccd/kernels/lanes.h"
+#include "common/geometry/kernels/lanes.h"
 
 namespace leaves {
 
