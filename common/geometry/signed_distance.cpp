@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
-#include <cstring>
 #include <numbers>
 
 #include "common/base/check.h"
+#include "common/geometry/kernels/nearest.h"
 
 namespace mortise {
 namespace {
@@ -80,37 +81,40 @@ Vec3 corner_of(const Bvh& bvh, std::uint32_t i, int k) {
 // which of two triangles at the same distance is found does not depend on what was asked first.
 constexpr double kRounding = 1e-14;
 
-// A point as the boxes of children see it, in float, so that all of a node are looked at together.
 // Rounding of the point and of two differences is below four units in the last place, 2.4e-7, of
-// its coordinates and those of the box; rounding of squares and sums is below 1e-6 of them.
-struct FloatPoint {
-  float x[3];
-  float slack_mm;
-  FloatPoint(const Vec3& local, double radius_mm)
-      : x{static_cast<float>(local[0]), static_cast<float>(local[1]), static_cast<float>(local[2])},
-        slack_mm(static_cast<float>(4e-7 * (radius_mm + local.norm()))) {}
+// its coordinates and those of the box.
+geometry::BoxPoint box_point(const Vec3& local, double radius_mm) {
+  return {
+      {static_cast<float>(local[0]), static_cast<float>(local[1]), static_cast<float>(local[2])},
+      static_cast<float>(4e-7 * (radius_mm + local.norm()))};
+}
 
-  // None is above the squared distance from the box.
-  void distances2(const Bvh::Node& node, float (&distance2)[Bvh::kWidth]) const {
-    constexpr int kQuad = 4;  // floats of a register of 16 bytes, which every processor has
-    typedef float Quad __attribute__((vector_size(16)));
-    const Quad zero{}, most = zero + std::numeric_limits<float>::max();
-    for (int begin = 0; begin < Bvh::kWidth; begin += kQuad) {
-      Quad sum{};
-      for (int c = 0; c < 3; ++c) {
-        Quad center, half;
-        std::memcpy(&center, node.local_center[c] + begin, sizeof center);
-        std::memcpy(&half, node.half[c] + begin, sizeof half);
-        const Quad from = x[c] - center, gap = (from > zero ? from : -from) - half - slack_mm;
-        const Quad outside = gap > zero ? gap : zero;
-        sum += outside * outside;
-      }
-      sum *= 1.0F - 1e-6F;
-      sum = sum < most ? sum : most;
-      std::memcpy(distance2 + begin, &sum, sizeof sum);
-    }
-  }
-};
+// A foot is off by less than 1e-14 of the coordinates, s, and its squared distance d^2 by
+// 2 d s + s^2 < 1e-6 d^2 + 2e6 s^2, of which the kernel takes off the first.
+geometry::TrianglePoint triangle_point(const Vec3& x, double extent_mm) {
+  const double s = 1e-14 * (extent_mm + x.norm());
+  return {{x[0], x[1], x[2]}, 2e6 * s * s};
+}
+
+// The nearest first: it often leaves nothing for the others.
+void offer_leaf(const Bvh& bvh, const Bvh::Leaf& leaf, const Vec3& x,
+                const geometry::TrianglePoint& exact, Found& found) {
+  double lower[Bvh::kLeafSize];
+  geometry::best_nearest().triangles(exact, bvh.corners[leaf.first].data(),
+                                     static_cast<int>(leaf.count), lower);
+  const auto offer = [&](std::uint32_t k) {
+    if (lower[k] > found.distance2) return;
+    const std::uint32_t i = leaf.first + k;
+    found.offer(
+        foot_on_triangle(x, corner_of(bvh, i, 0), corner_of(bvh, i, 1), corner_of(bvh, i, 2)), x,
+        bvh.triangle_order[i]);
+  };
+  const auto nearest =
+      static_cast<std::uint32_t>(std::min_element(lower, lower + leaf.count) - lower);
+  offer(nearest);
+  for (std::uint32_t k = 0; k < leaf.count; ++k)
+    if (k != nearest) offer(k);
+}
 
 // Nearest first, so that the best found so far (`found`) discards most of the tree.
 Found find_nearest(const Bvh& bvh, const Vec3& x, Found found) {
@@ -122,7 +126,9 @@ Found find_nearest(const Bvh& bvh, const Vec3& x, Found found) {
   int top = 0;
   stack[top++] = {0.0F, bvh.root};
   const Vec3 local = x - bvh.origin;
-  const FloatPoint point(local, bvh.radius_mm);
+  const geometry::BoxPoint point = box_point(local, bvh.radius_mm);
+  const geometry::TrianglePoint exact = triangle_point(x, bvh.extent_mm);
+  const geometry::NearestKernels& kernels = geometry::best_nearest();
   const double size = kRounding * (bvh.radius_mm + local.norm()), tiny = size * size;
   const auto discards = [&found, tiny](float distance2) {
     return static_cast<double>(distance2) * (1.0 - kRounding) > found.distance2 + tiny;
@@ -131,19 +137,19 @@ Found find_nearest(const Bvh& bvh, const Vec3& x, Found found) {
     const Item item = stack[--top];
     if (discards(item.distance2)) continue;
     if (item.child < 0) {
-      const Bvh::Leaf& leaf = bvh.leaves[~item.child];
-      for (std::uint32_t i = leaf.first; i < leaf.first + leaf.count; ++i)
-        found.offer(
-            foot_on_triangle(x, corner_of(bvh, i, 0), corner_of(bvh, i, 1), corner_of(bvh, i, 2)),
-            x, bvh.triangle_order[i]);
+      offer_leaf(bvh, bvh.leaves[~item.child], x, exact, found);
       continue;
     }
     const Bvh::Node& node = bvh.nodes[item.child];
     float distance2[Bvh::kWidth];
-    point.distances2(node, distance2);
+    const double limit2 = (found.distance2 + tiny) * (1.0 + 4.0 * kRounding);
+    const float limit = limit2 < 1e38 ? static_cast<float>(limit2) * (1.0F + 0x1p-22F)
+                                      : std::numeric_limits<float>::max();
+    unsigned near = kernels.boxes(point, node.local_center, node.half, limit, distance2) &
+                    ((1U << node.count) - 1U);
     const int begin = top;
-    for (int k = 0; k < node.count; ++k) {
-      if (discards(distance2[k])) continue;
+    for (; near != 0; near &= near - 1) {
+      const int k = std::countr_zero(near);
       int at = top++;
       while (at > begin && stack[at - 1].distance2 < distance2[k]) {
         stack[at] = stack[at - 1];
