@@ -17,7 +17,7 @@
 #include <utility>
 
 #include "common/base/hash.h"
-#include "common/geometry/recognition/recognition.h"
+#include "common/geometry/recognition/recognized.h"
 #include "common/io/mesh/mesh_import.h"
 #include "common/io/mesh/topology_report.h"
 #include "common/io/scenario/brought_part.h"
@@ -156,9 +156,10 @@ struct PartMaker::Work {
     ready.shape = std::make_shared<const PartShape>(make_it(wish.solid, ready.quantum_mm));
     if (is_file) add_notes(ready.shape->notes, ready.text);
     build_derived(*ready.shape, threads);
-    if (solid.mesh().triangles.size() <= kRecognizedOnDemand)
-      ready.recognized =
-          std::make_shared<const std::vector<Feature>>(recognize_features(solid).features);
+    if (solid.mesh().triangles.size() <= kRecognizedOnDemand) {
+      const auto shown = recognized(solid);
+      ready.recognized = {shown, &shown->features};
+    }
     if (is_file) tell(solid, ready);
     return ready;
   } catch (const std::exception& error) {  // memory

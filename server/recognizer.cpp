@@ -7,7 +7,7 @@
 #include <mutex>
 #include <thread>
 
-#include "common/geometry/recognition/recognition.h"
+#include "common/geometry/recognition/recognized.h"
 
 namespace mortise {
 
@@ -20,10 +20,9 @@ struct Recognizer::Work {
   void run() {
     for (const SolidPtr& mesh : meshes) {
       if (stop) return;
-      auto features =
-          std::make_shared<const std::vector<Feature>>(recognize_features(*mesh).features);
+      const auto shown = recognized(*mesh);
       const std::lock_guard lock(mutex);
-      found.emplace_back(mesh->hash(), std::move(features));
+      found.push_back({mesh->hash(), {shown, &shown->features}});
     }
     done = true;
   }

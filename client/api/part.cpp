@@ -5,7 +5,7 @@
 #include "client/api/part_body.h"
 #include "common/base/ranges.h"
 #include "common/generators/generators.h"
-#include "common/geometry/recognition/recognition.h"
+#include "common/geometry/recognition/recognized.h"
 #include "common/geometry/topology.h"
 #include "common/io/build_info.h"
 #include "common/io/scenario/assembly_parts.h"
@@ -39,9 +39,8 @@ std::vector<Feature> features_of(const PartBody& body) {
     if (const auto generated =
             mortise::generate(body.spec.mesh.generator, body.spec.mesh.parameters))
       for (const mortise::Feature& f : generated->features) features.push_back(feature_of(f));
-  const auto found =
-      mortise::recognize_features(*body.solid, {.quantum_mm = body.report.quantum_mm});
-  for (const mortise::Feature& f : found.features) features.push_back(feature_of(f));
+  const auto found = mortise::recognized(*body.solid, {.quantum_mm = body.report.quantum_mm});
+  for (const mortise::Feature& f : found->features) features.push_back(feature_of(f));
   return features;
 }
 

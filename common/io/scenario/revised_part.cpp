@@ -6,6 +6,7 @@
 
 #include "common/evaluation/band.h"
 #include "common/evaluation/deviation.h"
+#include "common/geometry/recognition/recognized.h"
 #include "common/io/scenario/scene_features.h"
 
 namespace mortise {
@@ -223,14 +224,13 @@ PartShape revised(const PartMemory& memory, SolidPtr solid, double quantum_mm) {
   if (is_first) {
     faces = first_faces(memory);
   } else {
-    Recognition recognized;
-    if (recognizes) recognized = recognize_features(*solid, {.quantum_mm = quantum_mm});
-    name_as_before(memory, *solid, recognized.features);
-    faces = declared_faces(memory, *solid, recognized.features);
+    Recognition shown;
+    if (recognizes) shown = *recognized(*solid, {.quantum_mm = quantum_mm});
+    name_as_before(memory, *solid, shown.features);
+    faces = declared_faces(memory, *solid, shown.features);
     std::vector<Feature> declared;
     for (const Named& face : faces) declared.push_back(face.feature);
-    for (Feature& feature :
-         undeclared_features(recognized, declared, solid->mesh().triangles.size()))
+    for (Feature& feature : undeclared_features(shown, declared, solid->mesh().triangles.size()))
       faces.push_back({std::move(feature), std::nullopt});
   }
   const std::shared_ptr<StatedPart> stated = stated_of(memory, faces);

@@ -5,13 +5,6 @@
 
 namespace mortise {
 
-const Recognition& RecognizedMeshes::of(const Solid& solid, double quantum_mm) {
-  const auto key = std::pair(solid.hash(), quantum_mm);
-  const auto known = known_.find(key);
-  if (known != known_.end()) return known->second;
-  return known_.emplace(key, recognize_features(solid, {.quantum_mm = quantum_mm})).first->second;
-}
-
 const Feature* find_recognized(const Recognition& recognition, const std::string& name) {
   const auto found = std::find_if(recognition.features.begin(), recognition.features.end(),
                                   [&](const Feature& f) { return f.name == name; });

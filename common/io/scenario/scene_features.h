@@ -1,5 +1,4 @@
 #pragma once
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,15 +10,6 @@
 
 /// Recognized features of a part beside its declared ones. Private to scene_load.
 namespace mortise {
-
-/// Recognizes each distinct mesh once.
-class RecognizedMeshes {
- public:
-  const Recognition& of(const Solid& solid, double quantum_mm);
-
- private:
-  std::map<std::pair<std::string, double>, Recognition> known_;
-};
 
 /// The recognized feature of this name; nothing when there is none.
 const Feature* find_recognized(const Recognition& recognition, const std::string& name);

@@ -8,6 +8,7 @@
 #include "common/evaluation/band.h"
 #include "common/evaluation/deviation.h"
 #include "common/generators/generators.h"
+#include "common/geometry/recognition/recognized.h"
 #include "common/io/scenario/brought_part.h"
 #include "common/io/scenario/live_rules.h"
 #include "common/io/scenario/scene_features.h"
@@ -313,10 +314,10 @@ class SceneLoader {
     // Of a mesh whose file states its faces nothing is guessed.
     const bool recognizes =
         spec.undeclared != UndeclaredSurface::kNominal && !kind.solid->mesh().stated;
-    const Recognition* recognized =
-        recognizes ? &recognized_.of(*kind.solid, kind.report.quantum_mm) : nullptr;
-    if (!match_features(spec, mesh, recognized, kind)) return std::nullopt;
-    if (recognized != nullptr) add_undeclared(*recognized, kind);
+    std::shared_ptr<const Recognition> shown;
+    if (recognizes) shown = recognized(*kind.solid, {.quantum_mm = kind.report.quantum_mm});
+    if (!match_features(spec, mesh, shown.get(), kind)) return std::nullopt;
+    if (shown) add_undeclared(*shown, kind);
     kind.band = build_band({kind.solid.get(), kind.features, spec.chord_error_mm,
                             for_band(kind.stated.rest), for_band(kind.stated.of_feature),
                             recognizes, kind.report.quantum_mm, mesh.freeform});
@@ -466,7 +467,6 @@ class SceneLoader {
   std::vector<std::optional<PartKind>> kinds_;  // nothing: could not be made, said in findings
   std::map<std::string, std::optional<LoadedMesh>> mesh_of_;
   std::map<std::string, SolidPtr> solid_of_;
-  RecognizedMeshes recognized_;
 };
 
 // As the same part of an assembly is made.
@@ -508,8 +508,7 @@ PartShape shape_of(SolidPtr solid, double quantum_mm, UndeclaredSurface undeclar
   PartKind kind;
   kind.solid = solid;
   const bool recognizes = undeclared != UndeclaredSurface::kNominal;
-  RecognizedMeshes recognized;
-  if (recognizes) add_undeclared(recognized.of(*solid, quantum_mm), kind);
+  if (recognizes) add_undeclared(*recognized(*solid, {.quantum_mm = quantum_mm}), kind);
   PartShape shape{solid, kind.features, {}, {}, std::move(notes)};
   shape.band = build_band({solid.get(),
                            kind.features,

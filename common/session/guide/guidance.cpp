@@ -4,7 +4,7 @@
 #include <cstdio>
 
 #include "common/base/constants.h"
-#include "common/geometry/recognition/recognition.h"
+#include "common/geometry/recognition/recognized.h"
 #include "common/messages/names.h"
 #include "common/session/world/moving_group.h"
 
@@ -143,8 +143,10 @@ const Feature* find_feature(const World& world, PartId part_id, const std::strin
 const std::vector<Feature>* recognized_in(const World& world, const Solid& solid) {
   if (solid.mesh().triangles.size() > kRecognizedOnDemand) return nullptr;
   std::shared_ptr<const std::vector<Feature>>& known = world.recognized[solid.hash()];
-  if (!known)
-    known = std::make_shared<const std::vector<Feature>>(recognize_features(solid).features);
+  if (!known) {
+    const auto shown = recognized(solid);
+    known = {shown, &shown->features};
+  }
   return known.get();
 }
 
