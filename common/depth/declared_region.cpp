@@ -33,11 +33,11 @@ std::array<Vec3, 7> probe_points(const TriangleMesh& mesh, std::uint32_t t) {
 
 class DeclaredSearch {
  public:
-  DeclaredSearch(const PairFrame& pair, const OverlapQuery& query, bool closely,
+  DeclaredSearch(const PairFrame& pair, const OverlapQuery& query, std::uint64_t mesh_work,
                  SearchScratch& scratch, std::uint64_t& evaluations)
       : pair_(pair),
         query_(query),
-        closely_(closely),
+        mesh_work_(mesh_work),
         scratch_(scratch),
         evaluations_(evaluations) {}
 
@@ -170,7 +170,7 @@ class DeclaredSearch {
     ask_nearest(known, found);
     const bool decides = !is_possible && found.best.depth_mm <= pair_.touch_mm;
     ask_all_over(known, decides ? kAllOverMore : kAllOver, found);
-    if (!closely_) return found;
+    if (mesh_work_ == 0) return found;
     std::vector<Root> roots;
     for (int role = 0; role < 2; ++role)
       for (const std::uint32_t t : known.triangles[role])
@@ -180,7 +180,7 @@ class DeclaredSearch {
     search.roots = &roots;
     search.accuracy_mm = std::max(query_.accuracy_mm, pair_.rounding_mm);
     search.sign_only = query_.refinement != Refinement::kFull;
-    search.work_cap = work_left() / 2;
+    search.work_cap = std::min(work_left() / 2, mesh_work_);
     Bracket full = search_depth(search, scratch_, evaluations_).front();
     if (full.best.depth_mm < found.best.depth_mm) full.best = found.best;
     return full;
@@ -188,7 +188,7 @@ class DeclaredSearch {
 
   const PairFrame& pair_;
   const OverlapQuery& query_;
-  const bool closely_;
+  const std::uint64_t mesh_work_;
   SearchScratch& scratch_;
   std::uint64_t& evaluations_;
 };
@@ -196,9 +196,9 @@ class DeclaredSearch {
 }  // namespace
 
 DeclaredRegion find_declared_region(const PairFrame& pair, const OverlapQuery& query,
-                                    const KnownFacePair& known, bool closely,
+                                    const KnownFacePair& known, std::uint64_t mesh_work,
                                     SearchScratch& scratch, std::uint64_t& evaluations) {
-  return DeclaredSearch(pair, query, closely, scratch, evaluations).find(known);
+  return DeclaredSearch(pair, query, mesh_work, scratch, evaluations).find(known);
 }
 
 }  // namespace mortise

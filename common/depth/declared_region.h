@@ -1,4 +1,5 @@
 #pragma once
+#include <cstdint>
 #include <optional>
 
 #include "common/depth/candidates.h"
@@ -18,10 +19,10 @@ struct DeclaredRegion {
 };
 
 /// The region of a pair of declared faces whose overlap has a closed form: certain and possible are
-/// those of the form (README, section 8), only the overlap of the meshes is searched. `closely`:
-/// as far as the work goes, not at some points only. Adds to `evaluations`.
+/// those of the form (README, section 8), only the overlap of the meshes is searched, by
+/// `mesh_work` evaluations at most; 0: it is looked for at some points only. Adds to `evaluations`.
 DeclaredRegion find_declared_region(const PairFrame& pair, const OverlapQuery& query,
-                                    const KnownFacePair& known, bool closely,
+                                    const KnownFacePair& known, std::uint64_t mesh_work,
                                     SearchScratch& scratch, std::uint64_t& evaluations);
 
 }  // namespace mortise

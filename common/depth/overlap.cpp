@@ -23,7 +23,8 @@
 namespace mortise {
 namespace {
 
-// Whether only the meshes overlap is searched where so much work is left: more than a tick gives.
+// Whether only the meshes overlap is searched where so much work is left, which is more than a tick
+// gives, and by no more of it: a point inside is found early or not at all.
 constexpr std::uint64_t kSecondLook = 20'000;
 
 // Evaluations of a search that only has to find points, not to prove that there are none. Chosen:
@@ -300,6 +301,12 @@ class Overlap {
     return query_.work_cap - std::min(query_.work_cap, result_.evaluations);
   }
 
+  // Evaluations at most for whether the meshes overlap, where points do not show it.
+  std::uint64_t mesh_work() const {
+    if (!closely_) return 0;
+    return query_.refinement == Refinement::kFull ? query_.work_cap : kSecondLook;
+  }
+
   // Lazily a glance is enough where the class does not hang on a proof.
   std::uint64_t glance() const { return kGlance + kGlancePerRoot * regions_.roots.size(); }
 
@@ -342,7 +349,7 @@ class Overlap {
     auto& [mesh, upper, lower, lower_lazily] = found;
     // Where no layer has to be searched, the meshes may cost more; else they wait for the class.
     if (lazy && closely_)
-      mesh = search(Layer::kMesh, true, work_left() / 3);
+      mesh = search(Layer::kMesh, true, std::min(work_left() / 3, mesh_work()));
     else if (told_by_planes() || (pair_.trivial && !lazy))
       mesh = search(Layer::kMesh, false, lazy ? std::min(kMeshAlone, work_left()) : work_left());
     else
@@ -453,7 +460,7 @@ class Overlap {
 
   void add_declared(const KnownFacePair& known, Candidates& candidates) {
     DeclaredRegion found =
-        find_declared_region(pair_, query_, known, closely_, scratch_, result_.evaluations);
+        find_declared_region(pair_, query_, known, mesh_work(), scratch_, result_.evaluations);
     if (found.left_to_search) leave_to_search(known, candidates, known_);
     if (!found.region) return;
     result_.regions.push_back(std::move(*found.region));
