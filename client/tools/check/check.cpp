@@ -96,6 +96,14 @@ void say_bodies(const OpenedScene& opened, CheckReport& report) {
                 [](const CheckedPair& p) { return p.verdicts.empty() && !p.is_contact; });
 }
 
+// A hole and a shaft of one size on one axis touch, whether their facets do or not.
+bool has_same_size(const MatingFinder& finder, const Part& a, const Part& b) {
+  const Mating mating = finder.find(a, b);
+  return std::any_of(mating.pairs.begin(), mating.pairs.end(), [](const CoaxialPair& pair) {
+    return relation_of_sizes(pair.hole_mm, pair.shaft_mm).relation == MatingKind::kFitNotStated;
+  });
+}
+
 class Checker {
  public:
   Checker(OpenedScene& opened, const CheckOptions& options)
@@ -172,9 +180,7 @@ class Checker {
       const Part &a = world_.parts[ids.a], &b = world_.parts[ids.b];
       const auto [entry, fresh] = known.try_emplace(standing_of(a, b));
       if (fresh) {
-        entry->second.touches =
-            distance(*a.solid, a.X_WP, *b.solid, b.X_WP, scratch, accuracy_of(a, b)).within_limit ||
-            has_same_size(a, b);
+        entry->second.touches = touch(a, b, scratch);
         if (entry->second.touches) {
           entry->second.row = report_.pairs.size();
           report_.pairs.emplace_back();
@@ -191,12 +197,9 @@ class Checker {
       if (pair.is_contact) name_inside(pair);
   }
 
-  // A hole and a shaft of one size on one axis touch, whether their facets do or not.
-  bool has_same_size(const Part& a, const Part& b) const {
-    const Mating mating = finder_.find(a, b);
-    return std::any_of(mating.pairs.begin(), mating.pairs.end(), [](const CoaxialPair& pair) {
-      return relation_of_sizes(pair.hole_mm, pair.shaft_mm).relation == MatingKind::kFitNotStated;
-    });
+  bool touch(const Part& a, const Part& b, CcdScratch& scratch) const {
+    return distance(*a.solid, a.X_WP, *b.solid, b.X_WP, scratch, accuracy_of(a, b)).within_limit ||
+           has_same_size(finder_, a, b);
   }
 
   void name_inside(CheckedPair& pair) const {
@@ -346,7 +349,10 @@ class Checker {
         continue;
       }
       PairVerdicts again = tell_pair(world_, pair.a, pair.b, kTellWork, scratch);
-      if (again.verdicts.empty()) continue;
+      if (again.verdicts.empty()) {
+        if (is_open) leave_apart(pair);
+        continue;
+      }
       const CollisionClass now = again.verdicts.front().collision_class;
       // What the exact solids said stays.
       if (!is_open && now != pair.verdicts.front().collision_class && now != CollisionClass::kReal)
@@ -357,9 +363,21 @@ class Checker {
       relate(pair);
       if (pair.common_mm3 >= 0.0 && may_explain(pair)) judge_explanation(pair);
     }
+    std::erase_if(report_.pairs, [](const CheckedPair& pair) {
+      return pair.collision_class == CollisionClass::kNone && !pair.not_examined;
+    });
     if (left_out > 0)
       report_.notes.push_back("ways out are told of " + std::to_string(told - left_out) +
                               " clashes, not of " + std::to_string(left_out) + " more");
+  }
+
+  // With more work no verdict is left: the parts touch at most.
+  void leave_apart(CheckedPair& pair) {
+    CcdScratch scratch;
+    pair.verdicts.clear();
+    pair.is_contact = touch(part(pair.a), part(pair.b), scratch);
+    pair.collision_class = pair.is_contact ? CollisionClass::kFake : CollisionClass::kNone;
+    relate(pair);
   }
 
   // 4. clearances

@@ -41,6 +41,14 @@ Judged judge_one(const Part& a, const Part& b, const PairRule* rule, const Close
   query.work_cap = closeness.work_cap;
   query.want_gpd = closeness.want_gpd;
   Judgement judgement = judge_pair(query, ccd);
+  // Little work looks at some points only for whether nothing but the meshes overlaps.
+  const std::uint64_t whole_work = JudgementQuery().work_cap;
+  if (judgement.verdicts.empty() && query.work_cap < whole_work &&
+      !(band_a_of(query).trivial && band_b_of(query).trivial) &&
+      surfaces_cross(*a.solid, a.X_WP, *b.solid, b.X_WP, ccd)) {
+    query.work_cap = whole_work;
+    judgement = judge_pair(query, ccd);
+  }
   StepCounters& counts = judged.counts;
   count(query, judgement, counts);
   counts.contacts.in = 1;
