@@ -34,6 +34,10 @@ constexpr std::uint64_t kGlance = 400, kGlancePerRoot = 2;
 // Evaluations of the overlap of the meshes, where the sharp bodies decide.
 constexpr std::uint64_t kMeshAlone = 1000;
 
+// Evaluations after which a search of the meshes that is still open asks their planes, and how much
+// more must be left for that.
+constexpr std::uint64_t kMeshLook = 2000, kMuchLonger = 8;
+
 // Planes that are fitted to corners which a file has rounded are off by so many of its steps.
 constexpr double kFileSteps = 4.0;
 
@@ -77,6 +81,16 @@ OverlapRegion region_without_depth(const PairFrame& pair, const Candidates& cand
     region.point_W = pair.X_W[0] * pair.bodies[0].mesh->corner(region.triangle_a, 0);
   }
   return decided_there(pair, std::move(region));
+}
+
+void add_without_depth(const PairFrame& pair, const Candidates& candidates,
+                       std::vector<OverlapRegion>& regions) {
+  const bool near = !pair.trivial && !candidates.triangles[0].empty();
+  if (!candidates.cross && !near) return;
+  for (const OverlapRegion& region : regions)
+    if (region.delta_mm.lo > 0.0) return;  // the closed part of the two found it already
+  if (!regions.empty() && !candidates.cross) return;
+  regions.push_back(region_without_depth(pair, candidates));
 }
 
 OverlapRegion region_of(const PairFrame& pair, const TipReach& reach) {
@@ -191,6 +205,22 @@ void settle_touch(const OverlapQuery& query, const PairFrame& pair, OverlapResul
         {region.delta_mm.lo, std::min(region.delta_mm.hi, pair.touch_mm)}, pair.touch_mm);
 }
 
+// Where meshes are the parts and touch in many places, a search of them ends at its limit only:
+// their planes are asked before.
+template <class Search>
+std::vector<Bracket> until_planes_tell(const PairFrame& pair, std::uint64_t work_cap,
+                                       Search&& search) {
+  if (!pair.trivial || work_cap < kMuchLonger * kMeshLook) return search(work_cap);
+  std::vector<Bracket> soon = search(kMeshLook);
+  if (std::none_of(soon.begin(), soon.end(), [](const Bracket& d) { return d.undecided; }))
+    return soon;
+  const auto touches = [&](const Bracket& d) { return d.best.depth_mm <= pair.touch_mm; };
+  if (!std::all_of(soon.begin(), soon.end(), touches) || !meshes_do_not_overlap(pair))
+    return search(work_cap);
+  for (Bracket& d : soon) d.hi_mm = std::min(d.hi_mm, pair.touch_mm);
+  return soon;
+}
+
 class Overlap {
  public:
   explicit Overlap(const OverlapQuery& query)
@@ -216,7 +246,7 @@ class Overlap {
     if (result_.regions.empty() && !(query_.only_certain && regions_.count > 0))
       if (const auto shared = find_shared_inside(pair_, candidates))
         result_.regions.push_back(region_of(pair_, *shared));
-    if (result_.no_inside) add_without_depth(candidates);
+    if (result_.no_inside) add_without_depth(pair_, candidates, result_.regions);
     planes_->tell(query_.only_certain, result_.regions);
     if (!query_.only_certain) settle_touch(query_, pair_, result_);
     if (!query_.only_certain && !planes_->decided() && !covers_.apart(Layer::kUpper)) add_tip();
@@ -303,8 +333,7 @@ class Overlap {
 
   // Evaluations at most for whether the meshes overlap, where points do not show it.
   std::uint64_t mesh_work() const {
-    if (!closely_) return 0;
-    return query_.refinement == Refinement::kFull ? query_.work_cap : kSecondLook;
+    return !closely_ ? 0 : query_.refinement == Refinement::kFull ? query_.work_cap : kSecondLook;
   }
 
   // Lazily a glance is enough where the class does not hang on a proof.
@@ -338,6 +367,11 @@ class Overlap {
     return brackets;
   }
 
+  std::vector<Bracket> search_meshes(bool sign_only, std::uint64_t work_cap) {
+    return until_planes_tell(
+        pair_, work_cap, [&](std::uint64_t cap) { return search(Layer::kMesh, sign_only, cap); });
+  }
+
   // Per region: of the meshes, of both layers, and of the least one before it was refined.
   struct Found {
     std::vector<Bracket> mesh, upper, lower, lower_lazily;
@@ -351,10 +385,9 @@ class Overlap {
     if (lazy && closely_)
       mesh = search(Layer::kMesh, true, std::min(work_left() / 3, mesh_work()));
     else if (told_by_planes() || (pair_.trivial && !lazy))
-      mesh = search(Layer::kMesh, false, lazy ? std::min(kMeshAlone, work_left()) : work_left());
+      mesh = search_meshes(false, lazy ? std::min(kMeshAlone, work_left()) : work_left());
     else
-      mesh =
-          search(Layer::kMesh, true, pair_.trivial ? work_left() : std::min(glance(), work_left()));
+      mesh = search_meshes(true, pair_.trivial ? work_left() : std::min(glance(), work_left()));
     // The sign of the depth is not enough where rounding may cover it.
     const auto in_rounding = [&](const Bracket& d) {
       return d.best.depth_mm > 0.0 && d.best.depth_mm <= pair_.reach_mm(Layer::kLower) &&
@@ -473,15 +506,6 @@ class Overlap {
       if (region.possible_mm.hi > 0.0) return;
     if (const auto reach = find_tip_reach(pair_, result_.evaluations))
       result_.regions.push_back(region_of(pair_, *reach));
-  }
-
-  void add_without_depth(const Candidates& candidates) {
-    const bool near = !pair_.trivial && !candidates.triangles[0].empty();
-    if (!candidates.cross && !near) return;
-    for (const OverlapRegion& region : result_.regions)
-      if (region.delta_mm.lo > 0.0) return;  // the closed part of the two found it already
-    if (!result_.regions.empty() && !candidates.cross) return;
-    result_.regions.push_back(region_without_depth(pair_, candidates));
   }
 
   OverlapResult result_;
