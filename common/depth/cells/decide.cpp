@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "common/base/check.h"
+#include "common/ccd/distance.h"
 #include "common/depth/cells/deepest.h"
 #include "common/depth/cells/tight_box.h"
 
@@ -26,6 +27,9 @@ constexpr double kWorthTightening = 0.8;
 constexpr double kNarrowWindow = 0.5;
 // A wider window is made with room, so that it is wide enough for what it newly contains.
 constexpr double kReachShare = 1.01;
+// Who is no farther from a part than this share of what it may be grown by stays in the box of it,
+// whatever is rounded.
+constexpr double kSurelyApart = 0.5;
 // The deepest point may be this far outside of the box that holds it: rounding of a linear program.
 constexpr double kOutside_mm = 1e-6;
 
@@ -206,6 +210,29 @@ class SharpSearch {
   SharpDecision decision_;
 };
 
+bool has_unknown_travel(const SharpPart& part, double depth_mm) {
+  const PlaneFaces& planes = *part.planes;
+  return std::any_of(
+      planes.sharp_points.begin(), planes.sharp_points.end(),
+      [&](std::uint32_t point) { return std::isinf(planes.travel_of[point].by_mm(depth_mm)); });
+}
+
+// A window of a part with a corner whose travel is not known is never wide enough. Where no window
+// is found empty, as one with this point never is, that need not be tried.
+bool is_surely_too_sharp(const SharpQuery& query) {
+  if (!has_unknown_travel(query.a, query.depth_mm) && !has_unknown_travel(query.b, query.depth_mm))
+    return false;
+  const auto reach_mm = [&](const SharpPart& part) {
+    return part.planes->most_travel.by_mm(query.depth_mm);
+  };
+  const double apart_mm = kSurelyApart * (reach_mm(query.a) + reach_mm(query.b));
+  CcdScratch scratch;
+  const DistanceResult nearest =
+      distance(*query.a.solid, query.X_BA, *query.b.solid, Pose(), scratch, apart_mm);
+  const double least_mm = kSurelyApart * std::min(reach_mm(query.a), reach_mm(query.b));
+  return nearest.within_limit && 0.5 * nearest.distance_mm <= least_mm;
+}
+
 void check(const SharpQuery& query) {
   for (const SharpPart& part : {query.a, query.b})
     MORTISE_CHECK(part.solid != nullptr && part.planes != nullptr,
@@ -241,6 +268,11 @@ void check(const SharpQuery& query, const SharpDecision& decision) {
 // A wider window is tried where an edge or tip asks for it.
 SharpDecision decide(const SharpQuery& query) {
   check(query);
+  if (query.ask_ahead && is_surely_too_sharp(query)) {
+    SharpDecision undecided;
+    undecided.state = SharpDecision::State::kTooSharp;
+    return undecided;
+  }
   double face_mm = query.depth_mm;
   for (const SharpPart& part : {query.a, query.b})
     for (const PlaneFace& face : part.planes->faces)

@@ -18,6 +18,9 @@ struct SharpQuery {
   SharpPart a, b;
   Pose X_BA;
   double depth_mm = 0.0;  ///< deeper than this is told as at least so deep
+  /// False: a pair with a corner of unknown travel is searched until that is met, for tests. The
+  /// state may be another one then, but for kDecided.
+  bool ask_ahead = true;
 };
 
 /// The deepest common point of one layer of both parts. The depth of x in a body is the largest d

@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include "common/depth/cells/decide.h"
+#include "common/evaluation/band.h"
 #include "tests/support/effort.h"
+#include "tests/support/shapes.h"
 #include "tests/unit/depth/random_polyhedra.h"
 
 namespace mortise {
@@ -117,6 +119,38 @@ TEST(SharpBodies, RandomConvexPairsAreJudgedAsTheirHalfSpacesAre) {
 TEST(SharpBodies, RandomUnionsAndDifferencesOfBoxesAreJudgedAsTheirHalfSpacesAre) {
   const int pairs = test::effort(60);
   expect_true(tried(polyhedra::random_boxes, pairs, 815), pairs / 10);
+}
+
+// A ball, at whose poles many facets meet, beside what is drawn.
+TEST(SharpBodies, ATipOfUnknownTravelLeavesOpenWhatALongerSearchLeavesOpen) {
+  polyhedra::Random random(11);
+  const SolidPtr ball = shapes::solid(shapes::sphere(5.0, Vec3::Zero(), 24));
+  int decided = 0, open = 0;
+  for (int i = 0; i < test::effort(120); ++i) {
+    const Polyhedron other =
+        i % 2 == 0 ? polyhedra::random_convex(random) : polyhedra::random_boxes(random);
+    BandInput input;
+    input.solid = ball.get();
+    const double t_mm = polyhedra::between(random, 0.0, 0.2);
+    input.rest = {{-t_mm, t_mm}, "plus minus"};
+    const PlaneFaces planes = find_plane_faces(*ball, build_band(input)),
+                     of_other = find_plane_faces(*other.solid, other.band);
+    SharpQuery query;
+    query.a = {ball.get(), &planes};
+    query.b = {other.solid.get(), &of_other};
+    query.depth_mm = kDepth_mm;
+    query.X_BA.q = polyhedra::rotation(random);
+    query.X_BA.p = polyhedra::between(random, 0.0, 25.0) * polyhedra::direction(random);
+    const SharpDecision fast = decide(query);
+    query.ask_ahead = false;
+    const SharpDecision slow = decide(query);
+    const bool is_decided = slow.state == SharpDecision::State::kDecided;
+    EXPECT_EQ(fast.state == SharpDecision::State::kDecided, is_decided) << i;
+    EXPECT_EQ(fast.largest.margin_mm.hi, slow.largest.margin_mm.hi) << i;
+    ++(is_decided ? decided : open);
+  }
+  EXPECT_GT(decided, test::effort(10));
+  EXPECT_GT(open, test::effort(10));
 }
 
 }  // namespace
