@@ -131,7 +131,8 @@ class CuttingPlanes {
     for (int body = 0; body < 2; ++body) {
       const Solid& solid = *pair_.bodies[body].solid;
       const Vec3 x = body == 0 ? Vec3(pair_.X_KS[1] * x_B) : x_B;
-      const SurfacePoint at = nearest_surface(solid, x);
+      const SurfacePoint at = nearest_surface(solid, x, near_[body]);
+      near_[body] = at.triangle;
       ++evaluations_;
       depth_mm[body] = at.depth_mm;
       const Vec3 n = at.depth_mm < -kOn_mm ? Vec3((x - at.point).stableNormalized()) : at.outward;
@@ -159,6 +160,7 @@ class CuttingPlanes {
   Box core_;
   Vec3 origin_;
   double most_mm_ = std::numeric_limits<double>::infinity();
+  std::uint32_t near_[2] = {Topology::kNone, Topology::kNone};  // to the point asked before
   InnerOverlap best_;
 };
 
