@@ -61,7 +61,7 @@ demo() {
 tests() {
   cmake -S . -B "$build" -DMORTISE_TESTS=ON &&
     ninja -C "$build" -j 2 &&
-    ctest --test-dir "$build" --output-on-failure -j 6 --resource-spec-file "$PWD/tests/resources.json"
+    ctest --test-dir "$build" --output-on-failure -j 6 --resource-spec-file "$PWD/tests/resources.json" --output-junit tests.xml
 }
 depth() {
   touch common/depth/patch.cpp &&
