@@ -62,6 +62,7 @@ class OwnUsers {
     std::string refusal;
   };
   State* find(UserId id);
+  void send_heartbeats(std::int64_t now_ns);
 
   ClientChannel& channel_;
   const ClientOptions& options_;

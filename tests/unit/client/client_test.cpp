@@ -334,6 +334,20 @@ TEST_F(OneClient, HeartbeatsGoWhileNothingElseDoes) {
   EXPECT_TRUE(bench.input.lost[0].said_goodbye);
 }
 
+TEST_F(OneClient, HeartbeatsOfItsUsersGoTogether) {
+  run(4);
+  client->add_user("b", "bot");  // joins while the first one is in
+  run(7);
+  std::size_t beats = 0, ticks = 0;
+  for (int i = 0; i < 100; ++i) {
+    run(1);
+    beats += bench.input.heartbeats.size();
+    ticks += bench.input.heartbeats.empty() ? 0 : 1;
+  }
+  EXPECT_GE(beats, 10u);
+  EXPECT_LE(ticks, 6u) << "at first they may go apart";
+}
+
 // Anything may happen to poses and events: in the end all clients know the same, and what each was
 // told is one stream without repeat, in order.
 TEST(Client, ConvergesUnderLossDelayRepeatAndReorder) {
