@@ -160,7 +160,7 @@ JudgedCase far_case(std::uint64_t seed) {
 void early_rows(Report& report, bool quick) {
   std::vector<double> decided_s, full_s, ratio;
   long long capped = 0;
-  for (std::uint64_t seed = 0; ratio.size() < (quick ? 10U : 100U) && seed < 5000; ++seed) {
+  for (std::uint64_t seed = 0; ratio.size() < (quick ? 40U : 100U) && seed < 5000; ++seed) {
     const JudgedCase c = far_case(2'000'000 + seed);
     if (!is_far(c, c.truth(false))) continue;
     const auto pair = with_grade(c, Grade::kDeclared);
