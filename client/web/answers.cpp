@@ -89,7 +89,8 @@ Answer mesh(GatewayState& state, std::string_view path) {
             {{"Cache-Control", "private, max-age=31536000, immutable"}}};
   }
   if (found.state == MeshAnswer::State::kAwaited) {
-    Answer answer = sentence(status::service_unavailable, "this mesh has not arrived yet");
+    // No error: browsers would tell it as one in their console.
+    Answer answer = sentence(status::accepted, "this mesh has not arrived yet");
     answer.fields.emplace_back("Retry-After", "1");
     return answer;
   }

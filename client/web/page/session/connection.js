@@ -147,8 +147,8 @@ export class Connection {
     const headers = { Authorization: `Bearer ${this.token}` };
     for (let tries = 0; tries < MESH_TRIES; ++tries) {
       const answer = await fetch(path, { headers });
-      if (answer.ok) return answer;
-      if (answer.status !== 503) throw new Error((await answer.text()).trim() || `${what}: ${answer.status}`);
+      if (answer.ok && answer.status !== 202) return answer; // 202: what was asked for is on its way
+      if (answer.status !== 202 && answer.status !== 503) throw new Error((await answer.text()).trim() || `${what}: ${answer.status}`);
       await new Promise((done) => setTimeout(done, 1000 * Number(answer.headers.get('Retry-After') ?? 1)));
     }
     throw new Error(`${what} did not come`);
