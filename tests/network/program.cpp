@@ -21,7 +21,7 @@ namespace {
 
 // Who talks in these tests stands for a machine of his own, which no other test takes time from: a
 // leader that gets no processor for 0.15 s counts as gone. Threads and programs that begin later
-// have it as well. Browsers take up to 8 for themselves. Where it is not allowed all take turns.
+// have it as well. Where it is not allowed all take turns.
 constexpr int kBeforeOthers = -10;
 [[maybe_unused]] const int is_before_others = setpriority(PRIO_PROCESS, 0, kBeforeOthers);
 

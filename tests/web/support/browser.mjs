@@ -1,7 +1,9 @@
 // Debian's chromium without a screen, pictures by software.
 import { existsSync } from 'node:fs';
+import { fileURLToPath } from 'node:url';
 
 const CHROMIUM = process.env.MORTISE_CHROMIUM ?? '/usr/bin/chromium';
+const PATIENT = fileURLToPath(new URL('patient_chromium.sh', import.meta.url));
 /** For a page to open, and for what is to be pressed: on a machine that does other things as well. */
 const PATIENCE_MS = 120_000;
 export const VIEW = { width: 1280, height: 720 };
@@ -28,7 +30,7 @@ export async function openBrowser() {
   // A page is put together without its software GPU, which costs a fifth more: that draws the view alone.
   // The sandbox of chromium refuses to run as root; nothing but our own page is opened.
   const sandbox = process.getuid?.() === 0 ? ['--no-sandbox'] : [];
-  return chromium.launch({ executablePath: CHROMIUM, headless: true, args: ['--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--disable-gpu-compositing', '--disable-dev-shm-usage', ...sandbox] });
+  return chromium.launch({ executablePath: PATIENT, headless: true, args: ['--use-angle=swiftshader', '--enable-unsafe-swiftshader', '--disable-gpu-compositing', '--disable-dev-shm-usage', ...sandbox] });
 }
 
 /** A page of its own profile. What it complains of is collected. @param {import('playwright-core').Browser} browser */
