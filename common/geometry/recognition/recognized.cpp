@@ -50,7 +50,8 @@ class Memory {
 
 std::shared_ptr<const Recognition> recognized(const Solid& solid,
                                               const RecognitionOptions& options) {
-  static Memory memory;
+  // Never destroyed: a background search may still ask when the process ends.
+  static Memory& memory = *new Memory;
   Key key(solid.hash(), options.quantum_mm, options.planes);
   if (auto known = memory.of(key)) return known;
   auto found = std::make_shared<const Recognition>(recognize_features(solid, options));
