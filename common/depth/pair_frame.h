@@ -4,7 +4,7 @@
 
 #include "common/base/constants.h"
 #include "common/depth/body.h"
-#include "common/depth/overlap.h"
+#include "common/depth/depth.h"
 
 namespace mortise {
 

@@ -1,4 +1,4 @@
-#include "common/depth/ready_body.h"
+#include "common/depth/depth.h"
 
 #include "common/depth/body.h"
 

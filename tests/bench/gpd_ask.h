@@ -1,5 +1,5 @@
 #pragma once
-#include "common/depth/generalized_depth.h"
+#include "common/depth/depth.h"
 #include "tests/bench/gpd_pairs.h"
 
 namespace mortise::bench {

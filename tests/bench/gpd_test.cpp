@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "common/depth/generalized_depth.h"
+#include "common/depth/depth.h"
 #include "tests/bench/gpd_ask.h"
 #include "tests/bench/gpd_pairs.h"
 #include "tests/support/shapes.h"

@@ -7,7 +7,7 @@
 #include <tuple>
 
 #include "common/base/check.h"
-#include "common/depth/interference_time.h"
+#include "common/depth/depth.h"
 #include "common/io/scenario/scenario_file.h"
 #include "common/io/scenario/scene_load.h"
 #include "common/io/scenario/scene_meshes.h"

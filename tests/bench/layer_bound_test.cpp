@@ -4,10 +4,10 @@
 
 #include <random>
 
-#include "common/depth/candidates.h"
-#include "common/depth/known_depth.h"
-#include "common/depth/overlap.h"
-#include "common/depth/search.h"
+#include "common/depth/depth.h"
+#include "common/depth/search/candidates.h"
+#include "common/depth/search/known_depth.h"
+#include "common/depth/search/search.h"
 #include "common/evaluation/band.h"
 #include "common/math/rotation.h"
 #include "tests/bench/judgement_parts.h"

@@ -31,7 +31,12 @@ const std::vector<Room> kRooms = {
     {"common/motion/", {"common/math/"}},
     {"common/broadphase/", {"common/geometry/", "common/motion/"}},
     {"common/ccd/", {"common/geometry/", "common/motion/"}},
-    {"common/depth/", {"common/ccd/"}},
+    // Other rooms see depth.h and body.h. The folders stand above each other.
+    {"common/depth/", {"common/ccd/", "common/depth/cells"}},
+    {"common/depth/cells", {"common/depth/"}},
+    {"common/depth/search", {"common/depth/"}},
+    {"common/depth/answer", {"common/depth/search"}},
+    {"common/depth/gpd", {"common/depth/"}},
     {"common/evaluation/", {"common/geometry/", "common/messages/"}},
     {"common/session/", {"common/broadphase/", "common/depth/", "common/evaluation/"}},
     {"common/generators/", {"common/geometry/"}},
@@ -74,7 +79,7 @@ const std::vector<Room> kRooms = {
     {"tests/",
      {"server/", "client/bot/", "client/web/", "client/web/replay_feed", "client/web/step_reader",
       "client/replay/", "client/report/", "client/saved/", "client/picture/", "client/tools/",
-      "client/tools/check/", "tests/"}},
+      "client/tools/check/", "common/depth/answer", "common/depth/gpd", "tests/"}},
 };
 
 // A library that is named in some places only. Tests may use what they test against.

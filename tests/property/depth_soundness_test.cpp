@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "common/depth/overlap.h"
+#include "common/depth/depth.h"
 #include "common/evaluation/verdict.h"
 #include "common/geometry/signed_distance.h"
 #include "tests/support/effort.h"

@@ -4,7 +4,7 @@
 
 #include <random>
 
-#include "common/depth/overlap.h"
+#include "common/depth/depth.h"
 #include "common/evaluation/verdict.h"
 #include "common/math/rotation.h"
 #include "tests/support/effort.h"

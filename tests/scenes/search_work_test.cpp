@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "common/depth/overlap.h"
+#include "common/depth/depth.h"
 #include "common/io/scenario/scenario_file.h"
 #include "common/io/scenario/scene_load.h"
 

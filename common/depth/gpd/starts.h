@@ -2,7 +2,7 @@
 #include <optional>
 #include <vector>
 
-#include "common/depth/generalized_depth.h"
+#include "common/depth/depth.h"
 #include "common/depth/gpd/twist.h"
 
 namespace mortise::gpd {

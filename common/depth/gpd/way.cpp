@@ -1,4 +1,4 @@
-#include "common/depth/gpd/way.h"
+#include "common/depth/depth.h"
 
 #include <algorithm>
 #include <cmath>

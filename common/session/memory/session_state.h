@@ -12,7 +12,7 @@
 #include "common/broadphase/broad_phase.h"
 #include "common/ccd/distance.h"
 #include "common/ccd/first_contact.h"
-#include "common/depth/overlap.h"
+#include "common/depth/depth.h"
 #include "common/session/world/world.h"
 
 namespace mortise {

@@ -1,7 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "common/depth/overlap.h"
+#include "common/depth/depth.h"
 
 namespace mortise {
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "common/broadphase/broad_phase.h"
-#include "common/depth/gpd/layer_depth.h"
+#include "common/depth/depth.h"
 #include "common/session/tick/step.h"
 
 namespace mortise {

@@ -6,7 +6,6 @@
 #include <optional>
 
 #include "common/base/constants.h"
-#include "common/depth/deep_region.h"
 #include "common/evaluation/clash_line.h"
 #include "common/evaluation/explain.h"
 #include "common/evaluation/interference.h"

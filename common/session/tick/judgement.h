@@ -1,9 +1,7 @@
 #pragma once
 #include <vector>
 
-#include "common/depth/generalized_depth.h"
-#include "common/depth/gpd/layer_depth.h"
-#include "common/depth/overlap.h"
+#include "common/depth/depth.h"
 #include "common/evaluation/verdict.h"
 #include "common/session/world/world.h"
 

@@ -1,5 +1,5 @@
 #pragma once
-#include "common/depth/interference_time.h"
+#include "common/depth/depth.h"
 #include "common/session/tick/tick_work.h"
 
 namespace mortise {

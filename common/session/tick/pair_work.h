@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "common/depth/interference_time.h"
+#include "common/depth/depth.h"
 #include "common/session/memory/session_state.h"
 #include "common/session/tick/judgement.h"
 

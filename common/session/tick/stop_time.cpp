@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "common/base/constants.h"
-#include "common/depth/inner_overlap.h"
+#include "common/depth/depth.h"
 #include "common/session/memory/known_distance.h"
 #include "common/session/tick/pair_queries.h"
 
@@ -190,11 +190,8 @@ double depth_at_start_mm(PairWork& pair, CcdScratch& ccd) {
   // A look that is unfinished even so has found too little, and would hold the part.
   const double depth_mm = std::max(0.0, look.capped ? look.depth_mm.hi : look.depth_mm.lo);
   if (!look.has_place || pair.ids.no_inside()) return depth_mm;
-  const OverlapQuery query = overlap_query(pair, 0.0);
-  const PairFrame frame(query);
-  const auto inner = find_inner_overlap(frame, {std::span(&look.point_W, 1), depth_mm},
-                                        kInnerWorkCap, pair.effort.counts.depth_evaluations);
-  return inner ? std::max(depth_mm, inner->depth_mm.lo - frame.reach_mm(Layer::kLower)) : depth_mm;
+  return certain_depth_inside_mm(overlap_query(pair, 0.0), look.point_W, depth_mm, kInnerWorkCap,
+                                 pair.effort.counts.depth_evaluations);
 }
 
 // Up to the time t_most at the latest.

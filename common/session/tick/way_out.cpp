@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "common/broadphase/swept_box.h"
-#include "common/depth/gpd/way.h"
+#include "common/depth/depth.h"
 
 namespace mortise {
 

@@ -1,6 +1,6 @@
 #pragma once
 #include "common/ccd/ccd_scratch.h"
-#include "common/depth/generalized_depth.h"
+#include "common/depth/depth.h"
 #include "common/session/world/world.h"
 
 namespace mortise {

@@ -1,6 +1,6 @@
 #include "common/session/world/part_shapes.h"
 
-#include "common/depth/ready_body.h"
+#include "common/depth/depth.h"
 
 namespace mortise {
 

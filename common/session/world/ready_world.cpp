@@ -4,7 +4,7 @@
 #include <set>
 #include <utility>
 
-#include "common/depth/ready_body.h"
+#include "common/depth/depth.h"
 #include "common/session/world/part_shapes.h"
 
 namespace mortise {

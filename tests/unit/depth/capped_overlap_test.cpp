@@ -5,7 +5,7 @@
 #include <limits>
 #include <random>
 
-#include "common/depth/overlap.h"
+#include "common/depth/depth.h"
 #include "tests/support/effort.h"
 #include "tests/unit/depth/depth_bands.h"
 

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <random>
 
-#include "common/depth/candidates.h"
-#include "common/depth/face_pair.h"
-#include "common/depth/patch.h"
+#include "common/depth/search/candidates.h"
+#include "common/depth/search/face_pair.h"
+#include "common/depth/search/patch.h"
 #include "common/math/rotation.h"
 #include "tests/support/numbers.h"
 #include "tests/unit/depth/depth_bands.h"

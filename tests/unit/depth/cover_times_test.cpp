@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <numbers>
 
-#include "common/depth/interference_time.h"
+#include "common/depth/depth.h"
 #include "common/math/rotation.h"
 #include "tests/support/effort.h"
 #include "tests/unit/depth/cover_parts.h"

@@ -11,7 +11,7 @@
 #include "common/depth/gpd/hull_depth.h"
 #include "common/depth/gpd/inner_piece.h"
 #include "common/depth/gpd/separation_search.h"
-#include "common/depth/search.h"
+#include "common/depth/search/search.h"
 #include "tests/unit/depth/depth_bands.h"
 
 namespace mortise {

@@ -1,4 +1,4 @@
-#include "common/depth/face_below.h"
+#include "common/depth/search/face_below.h"
 
 #include <gtest/gtest.h>
 

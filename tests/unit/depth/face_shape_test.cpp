@@ -4,7 +4,7 @@
 #include <functional>
 #include <map>
 
-#include "common/depth/region_report.h"
+#include "common/depth/answer/region_report.h"
 #include "tests/unit/depth/depth_bands.h"
 
 namespace mortise {

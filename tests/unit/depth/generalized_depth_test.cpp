@@ -1,5 +1,5 @@
-#include "common/depth/generalized_depth.h"
 #include "common/ccd/distance.h"
+#include "common/depth/depth.h"
 #include "common/depth/gpd/separation_search.h"
 
 #include <gtest/gtest.h>

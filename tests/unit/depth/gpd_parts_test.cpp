@@ -4,10 +4,10 @@
 #include <cmath>
 #include <random>
 
+#include "common/depth/depth.h"
 #include "common/depth/gpd/hull_depth.h"
 #include "common/depth/gpd/minimax.h"
 #include "common/depth/gpd/separation_search.h"
-#include "common/depth/gpd/way.h"
 #include "common/math/rotation.h"
 #include "tests/support/shapes.h"
 

@@ -1,11 +1,11 @@
-#include "common/depth/inner_overlap.h"
+#include "common/depth/answer/inner_overlap.h"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "common/depth/convex_overlap.h"
-#include "common/depth/region_report.h"
+#include "common/depth/answer/convex_overlap.h"
+#include "common/depth/answer/region_report.h"
 #include "common/evaluation/band.h"
 #include "common/generators/generators.h"
 #include "common/geometry/recognition/recognition.h"

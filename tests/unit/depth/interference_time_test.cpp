@@ -3,8 +3,7 @@
 #include <cmath>
 #include <random>
 
-#include "common/depth/interference_time.h"
-#include "common/depth/overlap.h"
+#include "common/depth/depth.h"
 #include "common/evaluation/verdict.h"
 #include "tests/support/effort.h"
 #include "tests/unit/depth/depth_bands.h"

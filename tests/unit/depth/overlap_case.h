@@ -2,7 +2,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "common/depth/overlap.h"
+#include "common/depth/depth.h"
 #include "common/evaluation/verdict.h"
 #include "tests/unit/depth/depth_bands.h"
 

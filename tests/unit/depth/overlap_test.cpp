@@ -1,4 +1,4 @@
-#include "common/depth/overlap.h"
+#include "common/depth/depth.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // A patch holds all of the surface that it stands for, however many faces meet at its triangle.
-#include "common/depth/patch.h"
+#include "common/depth/search/patch.h"
 
 #include <gtest/gtest.h>
 

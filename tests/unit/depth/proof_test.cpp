@@ -1,5 +1,5 @@
 // What a proof excludes is not there: shapes on which one step of it was too bold.
-#include "common/depth/proof.h"
+#include "common/depth/search/proof.h"
 
 #include <gtest/gtest.h>
 

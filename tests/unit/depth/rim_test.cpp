@@ -1,12 +1,12 @@
 // The rim of a bore against chamfers and shafts, and patches between two walls: no point is deeper
 // than the closed forms say, and they say no more than it takes.
-#include "common/depth/rim.h"
+#include "common/depth/search/rim.h"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "common/depth/wall_mean.h"
+#include "common/depth/search/wall_mean.h"
 #include "common/math/rotation.h"
 #include "tests/support/effort.h"
 

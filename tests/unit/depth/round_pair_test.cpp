@@ -1,6 +1,6 @@
 // The closed bracket of a round face in a hollow one against its slow twin: dense sampling of the
 // convex face. Random sizes, widenings, tilts and pushes.
-#include "common/depth/round_pair.h"
+#include "common/depth/search/round_pair.h"
 
 #include <gtest/gtest.h>
 

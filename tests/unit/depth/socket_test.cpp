@@ -2,8 +2,8 @@
 
 #include <random>
 
-#include "common/depth/face_pair.h"
-#include "common/depth/overlap.h"
+#include "common/depth/depth.h"
+#include "common/depth/search/face_pair.h"
 #include "common/math/rotation.h"
 #include "tests/support/numbers.h"
 #include "tests/support/turned_part.h"

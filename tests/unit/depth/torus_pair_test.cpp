@@ -3,7 +3,7 @@
 #include <functional>
 #include <random>
 
-#include "common/depth/patch.h"
+#include "common/depth/search/patch.h"
 #include "common/math/rotation.h"
 #include "tests/support/effort.h"
 #include "tests/support/numbers.h"

@@ -2,7 +2,7 @@
 // their exact depth within 1e-4 mm, in any pose and either order.
 #include <gtest/gtest.h>
 
-#include "common/depth/overlap.h"
+#include "common/depth/depth.h"
 #include "common/geometry/signed_distance.h"
 #include "tests/support/effort.h"
 #include "tests/support/known_depths.h"

@@ -3,7 +3,7 @@
 #include <memory>
 #include <random>
 
-#include "common/depth/overlap.h"
+#include "common/depth/depth.h"
 #include "common/geometry/signed_distance.h"
 #include "common/math/rotation.h"
 

@@ -4,7 +4,7 @@
 #include <thread>
 
 #include "common/depth/body_index.h"
-#include "common/depth/ready_body.h"
+#include "common/depth/depth.h"
 #include "common/messages/names.h"
 #include "common/session/memory/session_state.h"
 #include "common/session/world/part_shapes.h"

@@ -1,0 +1,300 @@
+#include "common/depth/answer/inner_overlap.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <queue>
+#include <vector>
+
+#include "common/depth/search/face_below.h"
+#include "common/geometry/signed_distance.h"
+
+namespace mortise {
+namespace {
+
+// Lazily a bracket is narrow enough at this share of the depth: what is told of parts that lie deep
+// in each other is how deep, not to the micrometre.
+constexpr double kNarrowShare = 0.005;
+// Lazily the overlap is said to grow away from the surface when it does by more than this share.
+constexpr double kGrowsAway = 0.01;
+// Work in which something deeper than at the surfaces is found, if there is.
+constexpr std::uint64_t kMostInVain = 600;
+// Work in which something deeper than expected is found.
+constexpr std::uint64_t kMostAsExpected = 8000;
+// The climb from a new best point ends at this share of its first step.
+constexpr int kClimbHalvings = 8;
+
+// A box of space in frame B and what is known of the points in it.
+struct Cell {
+  Vec3 center, half;
+  double most_mm = 0.0;  ///< no point in both parts is deeper
+  std::uint32_t number = 0;
+};
+struct LessPromising {
+  bool operator()(const Cell& x, const Cell& y) const {
+    return x.most_mm != y.most_mm ? x.most_mm < y.most_mm : x.number > y.number;
+  }
+};
+
+using CellCorners = FaceBelow::Corners;
+
+CellCorners corners_of(const Cell& cell) {
+  CellCorners corners;
+  for (int i = 0; i < 8; ++i)
+    corners[static_cast<std::size_t>(i)] =
+        cell.center + Vec3(i & 1 ? cell.half.x() : -cell.half.x(),
+                           i & 2 ? cell.half.y() : -cell.half.y(),
+                           i & 4 ? cell.half.z() : -cell.half.z());
+  return corners;
+}
+
+class InnerSearch {
+ public:
+  InnerSearch(const PairFrame& pair, const InnerStart& start, std::uint64_t work_cap,
+              std::uint64_t& evaluations)
+      : pair_(pair),
+        start_mm_(start.inside ? 0.0 : start.depth_mm),
+        growth_(start.everywhere ? 0.0 : kGrowsAway),
+        narrow_(start.everywhere ? 0.0 : kNarrowShare),
+        accuracy_mm_(std::max(start.accuracy_mm, pair.touch_mm)),
+        expected_mm_(start.expected_mm),
+        thin_mm_(std::min(half_extent_mm(0), half_extent_mm(1))),
+        left_(work_cap),
+        evaluations_(evaluations) {}
+
+  bool is_inside(const Vec3& from_B) { return look_at(from_B) > 0.0; }
+
+  // The overlap at a point of one surface grows inwards where the other surface is not what is
+  // nearest there.
+  bool grows_from(const Vec3& from_B) {
+    start_mm_ = std::max(start_mm_, look_at(from_B));
+    const SurfacePoint at[2] = {surface(0, from_B), surface(1, from_B)};
+    const int on = std::fabs(at[0].depth_mm) <= std::fabs(at[1].depth_mm) ? 0 : 1;
+    const Vec3 inwards_B = on == 0 ? Vec3(pair_.X_KS[0].q * -at[0].outward) : Vec3(-at[1].outward);
+    for (const double step_mm : {0.5 * start_mm_, 0.1 * thin_mm_, 0.9 * thin_mm_}) {
+      if (has_grown()) return true;
+      look_at(from_B + step_mm * inwards_B);
+    }
+    return has_grown();
+  }
+
+  bool has_grown() const { return best_mm_ > (1.0 + growth_) * start_mm_ + pair_.touch_mm; }
+
+  // Gives up where so much work has found nothing that is deeper than the start.
+  void search() {
+    if (has_grown()) climb(0.5 * thin_mm_);
+    const std::uint64_t give_up_at = left_ - std::min(left_, kMostInVain);
+    const std::uint64_t as_expected_at = left_ - std::min(left_, kMostAsExpected);
+    add(root());
+    most_mm_ = best_mm_;
+    while (!open_.empty()) {
+      const Cell cell = open_.top();
+      most_mm_ = std::max(best_mm_, cell.most_mm);
+      if (most_mm_ <= best_mm_ + narrow_mm() || left_ == 0) return;
+      if (left_ <= give_up_at && !has_grown()) return;
+      if (left_ <= as_expected_at && best_mm_ <= expected_mm_) return;
+      open_.pop();
+      most_mm_ = best_mm_;
+      split(cell);
+    }
+  }
+
+  InnerOverlap found() const {
+    return {{best_mm_, most_mm_ + 2.0 * pair_.rounding_mm}, pair_.X_W[1] * best_B_, in_either_mm_};
+  }
+
+ private:
+  double half_extent_mm(int body) const {
+    const Box& box = pair_.bodies[body].solid->bounds();
+    return 0.5 * (box.hi - box.lo).minCoeff();
+  }
+  double narrow_mm() const { return std::max(narrow_ * best_mm_, accuracy_mm_); }
+
+  SurfacePoint surface(int body, const Vec3& x_B) {
+    ++evaluations_;
+    left_ -= left_ > 0 ? 1 : 0;
+    const Vec3 x = body == 0 ? Vec3(pair_.X_KS[1] * x_B) : x_B;
+    return nearest_surface(*pair_.bodies[body].solid, x, near_[body]);
+  }
+
+  // Depth of the point in both; at most 0 where it is outside one of them.
+  double look_at(const Vec3& x_B) {
+    double sum_mm = 0.0, least_mm = std::numeric_limits<double>::infinity();
+    for (int body = 0; body < 2; ++body) {
+      const SurfacePoint at = surface(body, x_B);
+      near_[body] = at.triangle;
+      if (at.depth_mm <= 0.0) return 0.0;
+      sum_mm += at.depth_mm;
+      least_mm = std::min(least_mm, at.depth_mm);
+    }
+    if (sum_mm > best_mm_) {
+      in_either_mm_ = least_mm;
+      best_mm_ = sum_mm;
+      best_B_ = x_B;
+    }
+    return sum_mm;
+  }
+
+  // Uphill from the best point along the axes of the frame, in ever smaller steps.
+  void climb(double step_mm) {
+    for (int i = 0; i < kClimbHalvings && left_ > 0; ++i, step_mm *= 0.5) {
+      bool better = true;
+      while (better && left_ > 0) {
+        const double before_mm = best_mm_;
+        const Vec3 from = best_B_;
+        for (int k = 0; k < 3; ++k)
+          for (const double sign : {1.0, -1.0}) look_at(from + sign * step_mm * Vec3::Unit(k));
+        better = best_mm_ > before_mm + 0.1 * step_mm;
+      }
+    }
+  }
+
+  // The smallest box around what both can have in common.
+  Cell root() const {
+    Box of_a;
+    const Box& bounds = pair_.bodies[0].solid->bounds();
+    for (int i = 0; i < 8; ++i)
+      of_a.add(pair_.X_KS[0] * Vec3(i & 1 ? bounds.hi.x() : bounds.lo.x(),
+                                    i & 2 ? bounds.hi.y() : bounds.lo.y(),
+                                    i & 4 ? bounds.hi.z() : bounds.lo.z()));
+    const Box& of_b = pair_.bodies[1].solid->bounds();
+    const Vec3 lo = of_a.lo.cwiseMax(of_b.lo), hi = of_a.hi.cwiseMin(of_b.hi).cwiseMax(lo);
+    return {0.5 * (lo + hi), 0.5 * (hi - lo), 0.0, 0};
+  }
+
+  void split(const Cell& cell) {
+    int axis = 0;
+    cell.half.maxCoeff(&axis);
+    for (const double side : {-0.5, 0.5}) {
+      Cell half = cell;
+      half.half[axis] *= 0.5;
+      half.center[axis] += side * cell.half[axis];
+      add(half);
+    }
+  }
+
+  // Distance of the corners from the nearest face of the centre and from the one that is nearest on
+  // the far side of it. No point in the part is deeper than its distance from any face, and the
+  // mean of two such distances bounds it as well: exact between two parallel faces.
+  using Bounds = std::array<std::array<double, 8>, 3>;
+  Bounds bounds_of(int body, const Cell& cell, const SurfacePoint& at, double radius_mm) {
+    const Vec3 center = body == 0 ? Vec3(pair_.X_KS[1] * cell.center) : cell.center;
+    const Vec3 away = (center - at.point).stableNormalized();
+    const Vec3 beyond = center + radius_mm * away;
+    near_[body] = at.triangle;
+    const SurfacePoint other = surface(body, body == 0 ? Vec3(pair_.X_KS[0] * beyond) : beyond);
+    Bounds bounds;
+    CellCorners corners = corners_of(cell);
+    if (body == 0)
+      for (Vec3& x : corners) x = pair_.X_KS[1] * x;
+    bounds[0] = distances_mm(body, at.triangle, corners, center);
+    bounds[1] = distances_mm(body, other.triangle, corners, center);
+    for (std::size_t i = 0; i < corners.size(); ++i)
+      bounds[2][i] = 0.5 * (bounds[0][i] + bounds[1][i]);
+    return bounds;
+  }
+
+  // Of the corners from the plane face of the triangle, where it lies below all of the box;
+  // otherwise from the triangle.
+  std::array<double, 8> distances_mm(int body, std::uint32_t triangle, const CellCorners& corners,
+                                     const Vec3& center) const {
+    std::array<double, 8> distances;
+    FaceBelow face(*pair_.bodies[body].solid, triangle);
+    const bool is_over = face.holds(corners, center);
+    const TriangleMesh& mesh = *pair_.bodies[body].mesh;
+    for (std::size_t i = 0; i < corners.size(); ++i)
+      distances[i] = is_over
+                         ? face.distance_mm(corners[i])
+                         : (corners[i] - nearest_on_triangle(corners[i], mesh.corner(triangle, 0),
+                                                             mesh.corner(triangle, 1),
+                                                             mesh.corner(triangle, 2)))
+                               .norm();
+    return distances;
+  }
+
+  // Leaves out what has no point in both, or none that is deeper than the best.
+  void add(Cell cell) {
+    const double radius_mm = cell.half.norm();
+    SurfacePoint at[2];
+    double most_mm = 2.0 * radius_mm;
+    for (int body = 0; body < 2; ++body) {
+      at[body] = surface(body, cell.center);
+      if (at[body].depth_mm <= -radius_mm) return;
+      most_mm += at[body].depth_mm;
+    }
+    if (at[0].depth_mm > 0.0 && at[1].depth_mm > 0.0) {
+      const double before_mm = best_mm_;
+      look_at(cell.center);
+      if (best_mm_ > 1.05 * before_mm) climb(0.5 * radius_mm);
+    }
+    if (most_mm <= best_mm_) return;
+    const Bounds a = bounds_of(0, cell, at[0], radius_mm), b = bounds_of(1, cell, at[1], radius_mm);
+    for (const auto& of_a : a)
+      for (const auto& of_b : b) {
+        double largest_mm = 0.0;  // a sum of convex functions is largest at a corner
+        for (std::size_t i = 0; i < of_a.size(); ++i)
+          largest_mm = std::max(largest_mm, of_a[i] + of_b[i]);
+        most_mm = std::min(most_mm, largest_mm);
+      }
+    if (most_mm <= best_mm_) return;
+    cell.most_mm = most_mm;
+    cell.number = next_number_++;
+    open_.push(cell);
+  }
+
+  const PairFrame& pair_;
+  double start_mm_;
+  double growth_;  ///< share of it by which what is found must be deeper
+  double narrow_;  ///< share of the depth at which its bracket is narrow enough
+  double accuracy_mm_;
+  double expected_mm_;
+  double thin_mm_;  ///< half the least extent of the thinner part
+  std::uint64_t left_;
+  std::uint64_t& evaluations_;
+  std::uint32_t near_[2] = {Topology::kNone, Topology::kNone};
+  double best_mm_ = 0.0, most_mm_ = 0.0, in_either_mm_ = 0.0;
+  Vec3 best_B_ = Vec3::Zero();
+  std::priority_queue<Cell, std::vector<Cell>, LessPromising> open_;
+  std::uint32_t next_number_ = 0;
+};
+
+}  // namespace
+
+std::optional<InnerOverlap> find_inner_overlap(const PairFrame& pair, const InnerStart& start,
+                                               std::uint64_t work_cap, std::uint64_t& evaluations) {
+  InnerSearch search(pair, start, work_cap, evaluations);
+  const Pose X_BW = pair.X_W[1].inverse();
+  const bool grows =
+      std::any_of(start.points_W.begin(), start.points_W.end(), [&](const Vec3& point_W) {
+        return start.inside ? search.is_inside(X_BW * point_W) : search.grows_from(X_BW * point_W);
+      });
+  if (!grows && !start.everywhere) return std::nullopt;
+  search.search();
+  if (!search.has_grown()) return std::nullopt;
+  return search.found();
+}
+
+double inner_overlap_brute_force(const PairFrame& pair, double step_mm) {
+  const Box& box = pair.bodies[1].solid->bounds();
+  double most_mm = 0.0;
+  for (double x = box.lo.x(); x <= box.hi.x(); x += step_mm)
+    for (double y = box.lo.y(); y <= box.hi.y(); y += step_mm)
+      for (double z = box.lo.z(); z <= box.hi.z(); z += step_mm) {
+        const Vec3 x_B(x, y, z);
+        const double a_mm = -signed_distance_mm(*pair.bodies[0].solid, pair.X_KS[1] * x_B);
+        const double b_mm = -signed_distance_mm(*pair.bodies[1].solid, x_B);
+        if (a_mm > 0.0 && b_mm > 0.0) most_mm = std::max(most_mm, a_mm + b_mm);
+      }
+  return most_mm;
+}
+
+double certain_depth_inside_mm(const OverlapQuery& query, const Vec3& point_W, double depth_mm,
+                               std::uint64_t work_cap, std::uint64_t& evaluations) {
+  const PairFrame frame(query);
+  const auto inner =
+      find_inner_overlap(frame, {std::span(&point_W, 1), depth_mm}, work_cap, evaluations);
+  return inner ? std::max(depth_mm, inner->depth_mm.lo - frame.reach_mm(Layer::kLower)) : depth_mm;
+}
+
+}  // namespace mortise
