@@ -86,9 +86,25 @@ TEST_F(SceneFeatures, ARecognizedFitIsDecidedAndSaysWhatItRestsOn) {
   }
 }
 
-TEST_F(SceneFeatures, NothingIsRecognizedUnlessAsked) {
-  const OpenedScene opened = open("", "", "");
-  for (const Part& part : opened.scene.world.parts) EXPECT_TRUE(part.features.empty());
+TEST_F(SceneFeatures, AMeshThatSaysNothingIsRecognized) {
+  const OpenedScene opened = open("", "    chord_error: 0.1\n", "");
+  ASSERT_TRUE(opened.usable()) << errors(opened);
+  EXPECT_TRUE(opened.scene.world.parts[0].features.empty()) << "what states its error is not asked";
+  EXPECT_FALSE(opened.scene.world.parts[1].features.empty());
+  for (const Part& part : open("deviation: none\n", "", "").scene.world.parts)
+    EXPECT_TRUE(part.features.empty());
+}
+
+TEST_F(SceneFeatures, FacetsOfAPlainShaftInItsPlainBoreMakeNoRealClash) {
+  write("dowel", {{"diameter_mm", 19.98}, {"length_mm", 30}, {"facets", 96}});
+  write("ring", {{"bore_mm", 20}, {"outer_mm", 40}, {"width_mm", 20}, {"facets", 24}});
+  OpenedScene opened = open("", "", "");
+  for (const Verdict& verdict : judged(opened))
+    EXPECT_NE(verdict.collision_class, CollisionClass::kReal) << verdict.explanation;
+  OpenedScene as_meshes = open("deviation: none\n", "", "");
+  const std::vector<Verdict> verdicts = judged(as_meshes);
+  ASSERT_FALSE(verdicts.empty()) << "the meshes cross";
+  EXPECT_EQ(verdicts.front().collision_class, CollisionClass::kReal);
 }
 
 TEST_F(SceneFeatures, APartSpeaksForItself) {
@@ -130,7 +146,8 @@ TEST_F(SceneFeatures, WhatIsWrongIsSaidInOneLine) {
   said(open("", "    deviation: estimated\n    chord_error: 0.1\n", ""), "remove one");
   said(open("deviation: recognized\n", "    features:\n      bore_7: {iso: H7}\n", ""),
        "no feature of this name was recognized");
-  said(open("", "    features:\n      bore_1: {iso: H7}\n", ""), "deviation: recognized");
+  said(open("deviation: none\n", "    features:\n      bore_1: {iso: H7}\n", ""),
+       "deviation: recognized");
 }
 
 TEST_F(SceneFeatures, AnEstimateNeverPassesForMore) {

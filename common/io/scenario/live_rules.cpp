@@ -164,7 +164,7 @@ class LiveRules final : public SurfaceRules {
     PartMemory memory = known == memories_.end() ? PartMemory{} : *known->second;
     const std::size_t i = part.id.value - 1;
     const bool is_named = i < named_;
-    memory.undeclared = is_named ? scenario_.parts[i].undeclared : scenario_.undeclared;
+    memory.undeclared = is_named ? scenario_.parts[i].undeclared : scenario_.undeclared_of_meshes();
     if (is_named) memory.chord_error_mm = scenario_.parts[i].chord_error_mm;
     remember(memory, part, stated_[i]);
     return memory;

@@ -69,7 +69,7 @@ void read_head(YamlContext& context, const YamlMap& top, Scenario& scenario) {
     else
       top.error("policy", "'" + *policy + "' is not known; write " + std::string(kPolicyNames));
   }
-  if (const auto undeclared = read_deviation(top)) scenario.undeclared = *undeclared;
+  scenario.undeclared = read_deviation(top);
   if (const auto jump = top.positive_length_mm("max_jump")) scenario.max_jump_mm = *jump;
   if (const auto gap = top.positive_length_mm("min_gap")) scenario.min_gap_mm = *gap;
   if (const auto lease = top.number("lease_s")) {

@@ -398,7 +398,9 @@ void read_part(YamlContext& context, const YAML::Node& node, Scenario& scenario)
     else
       map.error("chord_error", "must not be negative");
   }
-  part.undeclared = read_deviation(map).value_or(scenario.undeclared);
+  const bool knows_surfaces = source == "generator" || part.chord_error_mm;
+  part.undeclared = read_deviation(map).value_or(scenario.undeclared.value_or(
+      knows_surfaces ? UndeclaredSurface::kNominal : UndeclaredSurface::kRecognized));
   if (map.has("deviation") && part.undeclared == UndeclaredSurface::kEstimated &&
       part.chord_error_mm)
     map.error("deviation", "estimated and chord_error: both speak of the rest; remove one");

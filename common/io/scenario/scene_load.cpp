@@ -207,7 +207,7 @@ class SceneLoader {
     }
     if (scene_.usable()) {
       world.rules = make_live_rules(scenario_, stated_);
-      world.shapes = make_shapes(scene_, scenario_.undeclared);
+      world.shapes = make_shapes(scene_, scenario_.undeclared_of_meshes());
     }
     if (scenario_.assembly) scene_.assembly = scenario_.assembly->sent;
     world.evaluates = evaluates(world);

@@ -184,7 +184,12 @@ struct Scenario {
   Policy policy = Policy::kStop;
   double max_jump_mm = 50.0;  ///< largest translation of one increment
   double lease_s = 5.0;
-  UndeclaredSurface undeclared = UndeclaredSurface::kNominal;  ///< of parts without their own
+  /// Of parts that do not say it themselves. Not said: a mesh file is looked at, unless it states
+  /// its chord error; a generator knows its surfaces.
+  std::optional<UndeclaredSurface> undeclared;
+  UndeclaredSurface undeclared_of_meshes() const {
+    return undeclared.value_or(UndeclaredSurface::kRecognized);
+  }
   std::vector<PartSpec> parts;
   std::optional<AssemblySpec> assembly;
   double min_gap_mm = 0.0;       ///< clearance that parts must keep; 0: none is asked for

@@ -120,9 +120,9 @@ Fresh fresh_scene(const World& world) {
     if (i >= scenario.parts.size()) {
       added[part.name] = &part;
       spec.mesh.file = part.solid->hash();
+      spec.undeclared = scenario.undeclared_of_meshes();
     }
     spec.name = part.name;
-    spec.undeclared = scenario.undeclared;
     spec.moving = part.moving;
     spec.X_WP = part.X_WP;
     specs.push_back(std::move(spec));

@@ -7,7 +7,7 @@ namespace mortise {
 namespace {
 
 TEST_F(RevisedPart, AFitFollowsItsFaceToAnotherMesh) {
-  for (const char* deviation : {"", "deviation: recognized\n"}) {
+  for (const char* deviation : {"deviation: none\n", "deviation: recognized\n"}) {
     SCOPED_TRACE(deviation);
     begin(deviation);
     ASSERT_EQ(fit_of_pair(), "Ø20 H7/k6");
@@ -30,7 +30,7 @@ TEST_F(RevisedPart, AFitFollowsItsFaceToAnotherMesh) {
 }
 
 TEST_F(RevisedPart, WhatIsStatedOfAFaceThatIsGoneWaitsForIt) {
-  for (const char* deviation : {"", "deviation: recognized\n"}) {
+  for (const char* deviation : {"deviation: none\n", "deviation: recognized\n"}) {
     SCOPED_TRACE(deviation);
     begin(deviation);
     const std::string told = replace(peg, dowel(19.0, 32));
@@ -92,7 +92,7 @@ TEST_F(RevisedPart, AFitOfARecognizedFaceFollowsTheFace) {
 }
 
 TEST_F(RevisedPart, AConstraintFollowsItsFacesOrIsGone) {
-  for (const char* deviation : {"", "deviation: recognized\n"}) {
+  for (const char* deviation : {"deviation: none\n", "deviation: recognized\n"}) {
     SCOPED_TRACE(deviation);
     begin(deviation);
     Details coaxial;

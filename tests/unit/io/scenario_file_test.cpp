@@ -296,7 +296,10 @@ std::vector<Fault> faults() {
       {part(kDowel + "    repeat: {count: 2}\n"), 7, "step"},
       {part(kDowel + "    instances: []\n"), 7, "expected a list"},
       {part(kDowel + "    instances:\n      - {moving: true}\n"), 8, "name is missing"},
-      {feature("point: [0,0,0]"), 8, "kind is missing"},
+      {feature("point: [0,0,0]"), 8, "needs kind"},
+      {part("    mesh: {file: a.stl, unit: mm}\n    deviation: none\n    features:\n"
+            "      f: {iso: H7}\n"),
+       9, "kind is missing"},
       {feature("kind: cylinder, point: [0,0,0], axis: [0,0,1]"), 8, "radius|diameter"},
       {feature("kind: cylnder"), 8, "not known"},
       {feature("kind: cylinder, point: [0,0,0], axis: [0,0,0], radius: 1"), 8, "not be zero"},
