@@ -36,14 +36,15 @@ struct Shelf {
     const Solid* solid = nullptr;
     std::string hash;  // of the mesh
     std::vector<SurfaceBand::Face> faces;
-    std::vector<std::uint16_t> face_of_triangle;
+    FaceOfTriangle face_of_triangle;
     std::shared_ptr<BodyIndex> index;
     std::uint64_t asked = 0;
 
     bool is_of(const Solid& s, const SurfaceBand& band) const {
-      return solid == &s && hash == s.hash() && face_of_triangle == band.face_of_triangle &&
+      return solid == &s && hash == s.hash() &&
              std::equal(faces.begin(), faces.end(), band.faces.begin(), band.faces.end(),
-                        same_face);
+                        same_face) &&
+             face_of_triangle == band.face_of_triangle;
     }
   };
   std::vector<Held> held;

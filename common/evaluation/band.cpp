@@ -114,7 +114,7 @@ void split_off_doubtful(SurfaceBand& band, const Feature& feature, std::size_t i
     return;
   }
   const auto own = static_cast<std::uint16_t>(band.faces.size());
-  for (const std::uint32_t t : doubtful.triangles) band.face_of_triangle[t] = own;
+  for (const std::uint32_t t : doubtful.triangles) band.face_of_triangle.set(t, own);
   band.faces.push_back(std::move(face));
 }
 
@@ -128,7 +128,7 @@ void split_rest_by_shape(SurfaceBand& band, const Solid& solid, double chord_err
     bool found = false;
     for (std::size_t t = 0; t < shapes.size(); ++t) {
       if (band.face_of_triangle[t] != 0 || shapes[t] != shape) continue;
-      band.face_of_triangle[t] = index;
+      band.face_of_triangle.set(t, index);
       found = true;
     }
     if (!found) continue;
@@ -169,7 +169,7 @@ void split_rest_by_estimate(SurfaceBand& band, const Solid& solid,
       face.grade = DeviationGrade::kEstimated;
       band.faces.push_back(std::move(face));
     }
-    band.face_of_triangle[t] = known->second;
+    band.face_of_triangle.set(t, known->second);
   }
 }
 
@@ -177,7 +177,7 @@ void split_rest_by_estimate(SurfaceBand& band, const Solid& solid,
 void split_off_freeform(SurfaceBand& band, std::span<const FreeformFace> freeform) {
   for (const FreeformFace& measured : freeform) {
     const auto index = static_cast<std::uint16_t>(band.faces.size());
-    for (const std::uint32_t t : measured.triangles) band.face_of_triangle[t] = index;
+    for (const std::uint32_t t : measured.triangles) band.face_of_triangle.set(t, index);
     SurfaceBand::Face face;
     face.deviation_mm = measured.deviation_mm;
     face.grade = DeviationGrade::kEstimated;
@@ -203,10 +203,10 @@ SurfaceBand build_band(const BandInput& input) {
   const bool chord = input.chord_error_mm.value_or(0.0) > 0.0;
   const bool estimate = input.estimate && !chord;
   if (!input.features.empty() || !input.freeform.empty() || chord || estimate)
-    band.face_of_triangle.assign(mesh.triangles.size(), 0);
+    band.face_of_triangle = std::vector<std::uint16_t>(mesh.triangles.size(), 0);
   for (std::size_t i = 0; i < input.features.size(); ++i) {
     const auto face = static_cast<std::uint16_t>(band.faces.size());
-    for (const std::uint32_t t : input.features[i].triangles) band.face_of_triangle[t] = face;
+    for (const std::uint32_t t : input.features[i].triangles) band.face_of_triangle.set(t, face);
     band.faces.push_back(face_of_feature(input.features[i], i, mesh));
   }
   for (std::size_t i = 0; i < input.features.size(); ++i)

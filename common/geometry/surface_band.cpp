@@ -13,7 +13,7 @@ Interval SurfaceBand::offset_mm(std::uint32_t triangle, const Vec3& x) const {
 }
 
 bool valid(const SurfaceBand& band, std::size_t triangles) {
-  const std::vector<std::uint16_t>& face_of = band.face_of_triangle;
+  const FaceOfTriangle& face_of = band.face_of_triangle;
   return !band.faces.empty() && (face_of.empty() || face_of.size() == triangles) &&
          std::all_of(face_of.begin(), face_of.end(),
                      [&](std::uint16_t face) { return face < band.faces.size(); }) &&

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "common/geometry/face_of_triangle.h"
 #include "common/geometry/feature.h"
 #include "common/math/interval.h"
 
@@ -45,8 +46,7 @@ struct SurfaceBand {
   };
   /// faces[0] is the rest of the part. A band that nothing was said of: one face without offsets.
   std::vector<Face> faces = std::vector<Face>(1);
-  std::vector<std::uint16_t>
-      face_of_triangle;  ///< index into faces; empty: all triangles are faces[0]
+  FaceOfTriangle face_of_triangle;  ///< index into faces; empty: all triangles are faces[0]
 
   const Face& face_of(std::uint32_t triangle) const {
     return faces[face_of_triangle.empty() ? 0 : face_of_triangle[triangle]];
@@ -59,8 +59,8 @@ struct SurfaceBand {
   double largest_offset_mm = 0.0;
   /// Rounding of the coordinates of the part's file: part of every deviation above.
   double quantum_mm = 0.0;
-  /// Convex edges and corners travel farther than their faces (sharp zones, see tips.h): how far out
-  /// of the mesh, mm. 0: none does.
+  /// Convex edges and corners travel farther than their faces (sharp zones, see tips.h): how far
+  /// out of the mesh, mm. 0: none does.
   double largest_travel_mm = 0.0;
   /// How far outside of the mesh the real surface may be, anywhere.
   double farthest_mm() const { return std::max({0.0, largest_offset_mm, largest_travel_mm}); }

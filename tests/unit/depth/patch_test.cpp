@@ -39,8 +39,8 @@ struct Crown {
     const TriangleMesh& m = solid->mesh();
     band = shapes::uniform_band({0.0, 0.0}, {-0.2, 0.01});
     band.faces.resize(14, band.faces.front());
-    band.face_of_triangle.assign(m.triangles.size(), 13);
-    for (std::uint16_t t = 0; t < 13; ++t) band.face_of_triangle[t] = t;
+    band.face_of_triangle = std::vector<std::uint16_t>(m.triangles.size(), 13);
+    for (std::uint16_t t = 0; t < 13; ++t) band.face_of_triangle.set(t, t);
     for (std::uint16_t t = 1; t < 13 && round; ++t) {
       const Vec3 n = (m.corner(t, 1) - m.corner(t, 0)).cross(m.corner(t, 2) - m.corner(t, 0));
       Surface surface;

@@ -109,11 +109,11 @@ TEST(Proof, AThirdFaceThatMovesOutwardLeavesNoRim) {
     band.faces[1].surface = round;
     band.faces[1].deviation_mm = {-0.03, 0.0};
     band.faces[1].grade = DeviationGrade::kDeclaredFeature;
-    band.face_of_triangle.assign(mesh.triangles.size(), 0);
+    band.face_of_triangle = std::vector<std::uint16_t>(mesh.triangles.size(), 0);
     for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
       bool on = true;
       for (int k = 0; k < 3; ++k) on &= std::fabs(mesh.corner(t, k).head<2>().norm() - 5.0) < 1e-9;
-      if (on) band.face_of_triangle[t] = 1;
+      if (on) band.face_of_triangle.set(t, 1);
     }
     const Body body(*slot, band);
     int beside_wall = 0, with_rim = 0;

@@ -49,7 +49,8 @@ TEST(Judgement, APartStatedAnewIsJudgedAsInAFreshThread) {
   // The same statements, numbered the other way round.
   for (SurfaceBand* band : {&pair.a.band, &pair.b.band}) {
     std::swap(band->faces[0], band->faces[1]);
-    for (std::uint16_t& face : band->face_of_triangle) face = static_cast<std::uint16_t>(1 - face);
+    for (std::size_t t = 0; t < band->face_of_triangle.size(); ++t)
+      band->face_of_triangle.set(t, static_cast<std::uint16_t>(1 - band->face_of_triangle[t]));
   }
   EXPECT_EQ(pair.judge().verdicts[0].collision_class, CollisionClass::kFake);
   pair.a.band = of_shaft;

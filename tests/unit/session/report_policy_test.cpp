@@ -118,7 +118,7 @@ TEST_F(ReportPolicy, ABandOfAnotherPartIsRefusedWithASentence) {
   const PartId peg = session.add("peg", cube_mesh(2), at(-5, 0, 0), true);
   session.world.find(peg)->band.face_of_triangle = {0, 0, 1};
   EXPECT_DEATH(tick({}), "a band has a face for every triangle");
-  session.world.find(peg)->band.face_of_triangle.clear();
+  session.world.find(peg)->band.face_of_triangle = {};
   session.world.find(peg)->band.faces.clear();
   EXPECT_DEATH(tick({}), "a band has a face for every triangle");
 }
