@@ -1,5 +1,6 @@
 #include "common/geometry/recognition/measure.h"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,6 +13,10 @@ namespace {
 
 // Corners nearer than this along the arc are one step. rad
 constexpr double kSameStep_rad = 1e-3;
+
+// Corners whose terms of second degree, each about 1, sum up to less lie on another quadric as
+// well: above what floats of a file leave (1e-6), below a cap of 5 degrees (1e-3).
+constexpr double kOnAnother = 1e-4;
 
 std::vector<double> distinct(std::vector<double> values, double apart) {
   std::sort(values.begin(), values.end());
@@ -195,6 +200,31 @@ RegionMeasure measure_region(const TriangleMesh& mesh, const Surface& surface,
     return z - m.along_mm.lo <= near || m.along_mm.hi - z <= near;
   });
   return m;
+}
+
+bool fix_one_quadric(std::span<const Vec3> corners, double off_mm) {
+  if (corners.empty()) return false;
+  const double share = 1.0 / static_cast<double>(corners.size());
+  Vec3 mean = Vec3::Zero();
+  for (const Vec3& x : corners) mean += share * x;
+  Mat3 spread = Mat3::Zero();
+  for (const Vec3& x : corners) spread += share * (x - mean) * (x - mean).transpose();
+  const Eigen::SelfAdjointEigenSolver<Mat3> along(spread);
+  // Each direction in its own unit: a flat cap is not told from two planes else.
+  const Vec3 extent = along.eigenvalues().cwiseMax(0.0).cwiseSqrt();
+  if (extent[0] <= off_mm) return false;
+  using Terms = Eigen::Matrix<double, 10, 1>;
+  Eigen::Matrix<double, 10, 10> sum = Eigen::Matrix<double, 10, 10>::Zero();
+  for (const Vec3& corner : corners) {
+    const Vec3 x = (along.eigenvectors().transpose() * (corner - mean)).cwiseQuotient(extent);
+    Terms terms;
+    terms << 1.0, x, x.cwiseAbs2(), x[0] * x[1], x[0] * x[2], x[1] * x[2];
+    sum += share * terms * terms.transpose();
+  }
+  // The least belongs to the surface itself, the second to the next that the corners are nearest
+  // to.
+  const double second = Eigen::SelfAdjointEigenSolver<decltype(sum)>(sum).eigenvalues()[1];
+  return std::sqrt(std::max(second, 0.0)) > kOnAnother + off_mm / extent[0];
 }
 
 Interval extent_along_mm(const TriangleMesh& mesh, const Surface& surface,

@@ -29,6 +29,11 @@ double size_mm(const Surface& surface, std::span<const Vec3> corners);
 RegionMeasure measure_region(const TriangleMesh& mesh, const Surface& surface,
                              std::span<const std::uint32_t> triangles);
 
+/// Do these corners, each off by no more than off_mm, lie on one surface of second degree only?
+/// Those on two plane curves lie on many: two planes together are one, so a ball through the
+/// corners of a low pyramid is chance. O(n).
+bool fix_one_quadric(std::span<const Vec3> corners, double off_mm);
+
 /// RegionMeasure::along_mm alone.
 Interval extent_along_mm(const TriangleMesh& mesh, const Surface& surface,
                          std::span<const std::uint32_t> triangles);

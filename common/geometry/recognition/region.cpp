@@ -214,7 +214,7 @@ bool RegionGrower::fit_all(Region& region) {
   return true;
 }
 
-bool RegionGrower::shows_enough(const Region& region) const {
+bool RegionGrower::shows_enough(const Region& region) {
   const Surface& s = region.surface;
   if (s.kind == SurfaceKind::kSphere) return shows_enough_of_sphere(region);
   const RegionMeasure m = measure_region(mesh_, s, region.triangles);
@@ -225,17 +225,14 @@ bool RegionGrower::shows_enough(const Region& region) const {
 }
 
 // The widest angle about the centre stands for the arc; told by the places of the facets, since the
-// normals of a nearly flat region turn by more than it spans. All corners on two circles: a cone as
-// well.
-bool RegionGrower::shows_enough_of_sphere(const Region& region) const {
+// normals of a nearly flat region turn by more than it spans. Corners on two circles lie on a cone
+// as well, and those of a low pyramid on flats.
+bool RegionGrower::shows_enough_of_sphere(const Region& region) {
   const Surface& s = region.surface;
   const std::vector<OrientedPoint> facets = normals_of(region.triangles);
   if (facets.empty()) return false;
-  Vec3 mean_normal = Vec3::Zero(), mean_place = Vec3::Zero();
-  for (const OrientedPoint& f : facets) {
-    mean_normal += f.normal / static_cast<double>(facets.size());
-    mean_place += (f.point - s.point).normalized();
-  }
+  Vec3 mean_place = Vec3::Zero();
+  for (const OrientedPoint& f : facets) mean_place += (f.point - s.point).normalized();
   double least = -1.0;
   // All around the ball places cancel, and no side is its middle.
   if (mean_place.norm() > 1e-9 * static_cast<double>(facets.size())) {
@@ -244,11 +241,7 @@ bool RegionGrower::shows_enough_of_sphere(const Region& region) const {
       least = std::min(least, (f.point - s.point).normalized().dot(mean_place.normalized()));
   }
   if (region.residual_mm > kShareOfArcHeight * s.radius_mm * (1.0 - least)) return false;
-  const auto axis = steady_direction(facets, mean_normal);
-  if (!axis) return false;
-  Surface about = s;
-  about.axis = *axis;
-  return !measure_region(mesh_, about, region.triangles).one_row;
+  return fix_one_quadric(points_of(region.triangles), region.residual_mm);
 }
 
 bool RegionGrower::settle(Region& region) {

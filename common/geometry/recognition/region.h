@@ -83,8 +83,8 @@ class RegionGrower {
   bool settles(Region& region, std::size_t least);
   bool refit(Region& region, const std::vector<Vec3>& corners, std::size_t most) const;
   bool fit_all(Region& region);
-  bool shows_enough(const Region& region) const;
-  bool shows_enough_of_sphere(const Region& region) const;
+  bool shows_enough(const Region& region);
+  bool shows_enough_of_sphere(const Region& region);
 
   const TriangleMesh& mesh_;
   const Topology& topology_;

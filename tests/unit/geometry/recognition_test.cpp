@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/lofted.h"
 #include "tests/support/numbers.h"
 #include "tests/support/turned_part.h"
 
@@ -163,6 +164,24 @@ TEST(Recognition, FindsWhatWasTurned) {
     if (kind == SurfaceKind::kTorus) continue;
     EXPECT_GE(found[k], 0.99 * asked[k]) << name_of_kind(kind);
   }
+}
+
+// Low pyramids without their tip, with as many flats of unlike widths: all corners lie on two
+// circles, and so on a ball, but the pyramid is as good an answer.
+TEST(Recognition, ALowPyramidIsNoBall) {
+  for (const int flats : {5, 6, 7, 9, 12})
+    for (const double share : {0.05, 0.3, 0.6}) {
+      std::vector<Vec3> section, upper;
+      for (int i = 0; i < flats; ++i) {
+        const double t = 2.0 * kPi * (i + 0.3 * std::sin(2.3 * i * i)) / flats;
+        section.emplace_back(5.0 * std::cos(t), 5.0 * std::sin(t), 0.0);
+        upper.emplace_back(share * section.back() + (1.0 - share) * 1.3 * Vec3::UnitZ());
+      }
+      const Solid solid(shapes::lofted({section, upper}));
+      ASSERT_TRUE(solid.topology().closed());
+      for (const Feature& f : recognize_features(solid).features)
+        EXPECT_NE(f.surface.kind, SurfaceKind::kSphere) << flats << " flats, " << share;
+    }
 }
 
 // A slab whose top waves by 2 mm over 200 mm: its normals turn by several degrees, but it is no
