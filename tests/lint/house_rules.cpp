@@ -31,7 +31,7 @@ const std::vector<Room> kRooms = {
     {"common/motion/", {"common/math/"}},
     {"common/broadphase/", {"common/geometry/", "common/motion/"}},
     {"common/ccd/", {"common/geometry/", "common/motion/"}},
-    // Other rooms see depth.h and body.h. The folders stand above each other.
+    // Other rooms may not include search, answer and gpd, and none of the folders a later one.
     {"common/depth/", {"common/ccd/", "common/depth/cells"}},
     {"common/depth/cells", {"common/depth/"}},
     {"common/depth/search", {"common/depth/"}},

@@ -184,8 +184,8 @@ struct Scenario {
   Policy policy = Policy::kStop;
   double max_jump_mm = 50.0;  ///< largest translation of one increment
   double lease_s = 5.0;
-  /// Of parts that do not say it themselves. Not said: a mesh file is looked at, unless it states
-  /// its chord error; a generator knows its surfaces.
+  /// Of parts that do not state it themselves. Empty: kRecognized for a mesh file without a stated
+  /// chord error, kNominal for the others.
   std::optional<UndeclaredSurface> undeclared;
   UndeclaredSurface undeclared_of_meshes() const {
     return undeclared.value_or(UndeclaredSurface::kRecognized);
