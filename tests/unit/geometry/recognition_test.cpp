@@ -166,6 +166,19 @@ TEST(Recognition, FindsWhatWasTurned) {
   }
 }
 
+TriangleMesh in_floats(TriangleMesh mesh) {
+  for (Vec3& x : mesh.points_mm) x = x.cast<float>().cast<double>();
+  return mesh;
+}
+
+bool shows_ball(const TriangleMesh& mesh) {
+  const Solid solid(mesh);
+  EXPECT_TRUE(solid.topology().closed());
+  const auto features = recognize_features(solid).features;
+  return std::any_of(features.begin(), features.end(),
+                     [](const Feature& f) { return f.surface.kind == SurfaceKind::kSphere; });
+}
+
 // Low pyramids without their tip, with as many flats of unlike widths: all corners lie on two
 // circles, and so on a ball, but the pyramid is as good an answer.
 TEST(Recognition, ALowPyramidIsNoBall) {
@@ -177,10 +190,18 @@ TEST(Recognition, ALowPyramidIsNoBall) {
         section.emplace_back(5.0 * std::cos(t), 5.0 * std::sin(t), 0.0);
         upper.emplace_back(share * section.back() + (1.0 - share) * 1.3 * Vec3::UnitZ());
       }
-      const Solid solid(shapes::lofted({section, upper}));
-      ASSERT_TRUE(solid.topology().closed());
-      for (const Feature& f : recognize_features(solid).features)
-        EXPECT_NE(f.surface.kind, SurfaceKind::kSphere) << flats << " flats, " << share;
+      const TriangleMesh mesh = shapes::lofted({section, upper});
+      EXPECT_FALSE(shows_ball(mesh)) << flats << " flats, " << share;
+      EXPECT_FALSE(shows_ball(in_floats(mesh))) << flats << " flats, floats, " << share;
+    }
+}
+
+TEST(Recognition, ABallIsOneInFloats) {
+  for (const double radius_mm : {0.1, 3.0, 700.0})
+    for (const int rows : {12, 16, 40}) {
+      const TriangleMesh mesh = shapes::sphere(radius_mm, Vec3(1.0, 2.0, 3.0) * radius_mm, rows);
+      EXPECT_TRUE(shows_ball(mesh)) << radius_mm << " mm, " << rows << " rows";
+      EXPECT_TRUE(shows_ball(in_floats(mesh))) << radius_mm << " mm, floats, " << rows << " rows";
     }
 }
 
