@@ -36,14 +36,14 @@ export class Labels {
     this.#watchCovers();
   }
 
-  /** Measured when one of them changes, so that nothing is laid out in a picture. */
+  /** Measured when one of them changes, so that nothing is laid out in a picture; before it is seen, words have made room. */
   #watchCovers() {
     const beside = [...(this.layer.parentElement?.children ?? [])].filter((other) => other !== this.layer && other !== this.stage.canvas);
     const measure = () => {
       const { left, top } = this.layer.getBoundingClientRect();
       this.#covers = beside.map((other) => other.getBoundingClientRect()).filter(({ width, height }) => width > 0 && height > 0)
         .map((box) => ({ left: box.left - left, top: box.top - top, right: box.right - left, bottom: box.bottom - top }));
-      this.stage.ask();
+      this.#place();
     };
     const watch = new ResizeObserver(measure);
     for (const element of [this.layer, ...beside]) watch.observe(element);
