@@ -61,7 +61,7 @@ PlanePair::PlanePair(const PairFrame& pair) : pair_(pair) {
   const double most_mm = convex ? kAnyDepth * pair.deepest_mm(Layer::kUpper) : 0.0;
   for (const double depth_mm : {kDeeper * near_mm, most_mm}) {
     if (!(depth_mm > near_mm)) continue;
-    look(depth_mm);
+    look(depth_mm, &near);
     if (has_brackets()) return;
   }
   decision_ = near;
@@ -69,7 +69,7 @@ PlanePair::PlanePair(const PairFrame& pair) : pair_(pair) {
   decided_ = true;
 }
 
-void PlanePair::look(double depth_mm) {
+void PlanePair::look(double depth_mm, const SharpDecision* known) {
   if (!(depth_mm > pair_.touch_mm)) return;
   depth_mm_ = depth_mm;
   SharpQuery query;
@@ -77,6 +77,7 @@ void PlanePair::look(double depth_mm) {
   query.b = {pair_.bodies[1].solid, &pair_.bodies[1].plane_faces()};
   query.X_BA = pair_.X_KS[0];
   query.depth_mm = depth_mm;
+  query.known = known;
   decision_ = decide(query);
   const auto has_sign = [&](const SharpDepth& depth) {
     return depth.margin_mm.hi <= pair_.touch_mm ||

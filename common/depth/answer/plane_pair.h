@@ -29,7 +29,7 @@ class PlanePair {
   void tell(bool only_certain, std::vector<OverlapRegion>& regions) const;
 
  private:
-  void look(double depth_mm);
+  void look(double depth_mm, const SharpDecision* known = nullptr);
   bool certain() const { return decision_.least.margin_mm.lo > pair_.touch_mm; }
   bool possible() const { return decision_.largest.margin_mm.lo > pair_.touch_mm; }
   /// Of the overlap, or of minus the gap; nullopt: deeper than was looked.

@@ -8,6 +8,8 @@
 
 namespace mortise {
 
+struct SharpDecision;
+
 /// One part of a pair that is decided by the sharp offset bodies of both.
 struct SharpPart {
   const Solid* solid = nullptr;
@@ -18,6 +20,9 @@ struct SharpQuery {
   SharpPart a, b;
   Pose X_BA;
   double depth_mm = 0.0;  ///< deeper than this is told as at least so deep
+  /// The pair is decided already, to a smaller depth: points that were found stay, only what is
+  /// deeper is asked for, and little work is done for it.
+  const SharpDecision* known = nullptr;
   /// False: a pair with a corner of unknown travel is searched until that is met, for tests. The
   /// state may be another one then, but for kDecided.
   bool ask_ahead = true;

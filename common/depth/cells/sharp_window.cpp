@@ -99,9 +99,14 @@ void SharpWindow::gather() {
         return false;
       }
       faces_.push_back(face);
+      plane_of_.push_back(planes_.faces[face]);
       triangles_.emplace_back();
+      facets_.emplace_back();
     }
     triangles_[index].push_back(t);
+    facets_[index].push_back({.first = static_cast<std::uint32_t>(corners_.size()),
+                              .count = static_cast<std::uint32_t>(polygon_.size())});
+    corners_.insert(corners_.end(), polygon_.begin(), polygon_.end());
     return true;
   });
   all_ = faces_.size() == kMostFaces ? ~FaceSet{0} : (FaceSet{1} << faces_.size()) - 1;
@@ -120,7 +125,7 @@ void SharpWindow::need_reach(const Box& core, double depth_mm) {
         if (beyond == Topology::kNone) continue;  // the part is open there
         const std::uint32_t other = planes_.face_of_triangle[beyond];
         if (other < PlaneFaces::kWithoutArea && other > faces_[i])
-          take(edge_travel(planes_.faces[faces_[i]], planes_.faces[other]).by_mm(depth_mm));
+          take(edge_travel(plane_of_[i], planes_.faces[other]).by_mm(depth_mm));
       }
   for (const std::uint32_t point : planes_.sharp_points) {
     const Vec3& at = solid_.mesh().points_mm[point];
@@ -133,17 +138,6 @@ bool SharpWindow::solid_inside() const { return is_inside(box_.center()); }
 
 bool SharpWindow::is_inside(const Vec3& x) const { return inside(solid_, x); }
 
-// Facets beside each other are mostly cut off by the same plane.
-bool SharpWindow::take_facet(std::uint32_t triangle, const PlaneFace* cuts_off) {
-  const TriangleMesh& mesh = solid_.mesh();
-  polygon_ = {mesh.corner(triangle, 0), mesh.corner(triangle, 1), mesh.corner(triangle, 2)};
-  if (cuts_off != nullptr && std::all_of(polygon_.begin(), polygon_.end(), [&](const Vec3& corner) {
-        return cuts_off->n.dot(corner) - (cuts_off->c - 2.0 * apart_mm_) > 0.0;
-      }))
-    return false;
-  return clip_to_box();
-}
-
 bool SharpWindow::clip_to_box() {
   for (int k = 0; k < 3 && !polygon_.empty(); ++k) {
     clip(polygon_, spare_, Vec3::Unit(k), box_.hi[k] - apart_mm_);
@@ -152,29 +146,54 @@ bool SharpWindow::clip_to_box() {
   return !polygon_.empty();
 }
 
-bool SharpWindow::clip_to(FaceSet half_spaces, bool outside) {
+void SharpWindow::place(Facet& facet) const {
+  facet.placed = true;
+  for (std::size_t i = 0; i < faces_.size(); ++i) {
+    const PlaneFace& face = plane_of_[i];
+    bool none_inside = true, all_inside = true, none_outside = true, all_outside = true;
+    for (std::uint32_t k = facet.first; k < facet.first + facet.count; ++k) {
+      const double along = face.n.dot(corners_[k]);
+      const double beyond = along - (face.c - 2.0 * apart_mm_);
+      const double short_of = -along - (-face.c - 2.0 * apart_mm_);
+      none_inside &= beyond >= 0.0;
+      all_inside &= beyond <= 0.0;
+      none_outside &= short_of >= 0.0;
+      all_outside &= short_of <= 0.0;
+    }
+    const FaceSet bit = FaceSet{1} << i;
+    if (none_inside && !all_inside) facet.none_inside |= bit;
+    if (all_inside) facet.all_inside |= bit;
+    if (none_outside && !all_outside) facet.none_outside |= bit;
+    if (all_outside) facet.all_outside |= bit;
+  }
+}
+
+// Mostly one plane keeps all of a facet out, and few go through it.
+bool SharpWindow::take_facet(Facet& facet, FaceSet half_spaces, bool outside) {
+  if (!facet.placed) place(facet);
+  if (half_spaces & (outside ? facet.none_outside : facet.none_inside)) return false;
+  const auto first = corners_.begin() + facet.first;
+  polygon_.assign(first, first + facet.count);
   const double side = outside ? -1.0 : 1.0;
-  for (FaceSet rest = half_spaces; rest != 0 && !polygon_.empty(); rest &= rest - 1) {
-    const PlaneFace& face = planes_.faces[faces_[static_cast<std::size_t>(std::countr_zero(rest))]];
+  for (FaceSet rest = half_spaces & ~(outside ? facet.all_outside : facet.all_inside);
+       rest != 0 && !polygon_.empty(); rest &= rest - 1) {
+    const PlaneFace& face = plane_of_[static_cast<std::size_t>(std::countr_zero(rest))];
     clip(polygon_, spare_, side * face.n, side * face.c - 2.0 * apart_mm_);
-    if (polygon_.empty()) cuts_off_ = &face;
   }
   return !polygon_.empty() && area(polygon_) > kLeastArea_mm2;
 }
 
 FaceSet SharpWindow::outside_of(const Vec3& x) const {
   FaceSet set = 0;
-  for (std::size_t i = 0; i < faces_.size(); ++i) {
-    const PlaneFace& face = planes_.faces[faces_[i]];
-    if (face.n.dot(x) - face.c > -apart_mm_) set |= FaceSet{1} << i;
-  }
+  for (std::size_t i = 0; i < plane_of_.size(); ++i)
+    if (plane_of_[i].n.dot(x) - plane_of_[i].c > -apart_mm_) set |= FaceSet{1} << i;
   return set;
 }
 
 // Points just outside of a facet and inside of all faces that are held.
 void SharpWindow::clauses_of_facet(std::size_t face, std::vector<FaceSet>& found) const {
   const std::vector<Vec3>& left = polygon_;
-  const Vec3 outwards = apart_mm_ * planes_.faces[faces_[face]].n;
+  const Vec3 outwards = apart_mm_ * plane_of_[face].n;
   const Vec3 middle = middle_of(left);
   FaceSet best = 0;
   for (std::size_t i = 0; i <= left.size(); ++i) {
@@ -195,9 +214,8 @@ std::vector<FaceSet> SharpWindow::find_clauses(FaceSet held) {
   std::vector<FaceSet> found;
   for (std::size_t g = 0; g < faces_.size(); ++g) {
     if (held >> g & 1) continue;
-    cuts_off_ = nullptr;
-    for (const std::uint32_t t : triangles_[g])
-      if (take_facet(t, cuts_off_) && clip_to(held, false)) clauses_of_facet(g, found);
+    for (Facet& facet : facets_[g])
+      if (take_facet(facet, held, false)) clauses_of_facet(g, found);
   }
   if (found.empty()) clauses_in_plane(held, found);
   std::sort(found.begin(), found.end(), shorter);
@@ -215,7 +233,7 @@ FaceSet SharpWindow::both_ways(FaceSet half_spaces) const {
   for (std::size_t i = 0; i < faces_.size(); ++i)
     for (std::size_t j = i + 1; j < faces_.size(); ++j) {
       if (!(half_spaces >> i & half_spaces >> j & 1)) continue;
-      const PlaneFace &a = planes_.faces[faces_[i]], &b = planes_.faces[faces_[j]];
+      const PlaneFace &a = plane_of_[i], &b = plane_of_[j];
       const Vec3 n = a.n + b.n;
       const double apart_mm = std::fabs(n.dot(middle) - (a.c + b.c)) + n.cwiseAbs().dot(half);
       if (apart_mm <= apart_mm_) found |= FaceSet{1} << i | FaceSet{1} << j;
@@ -246,10 +264,10 @@ bool SharpWindow::find_least(FaceSet held) {
   const FaceSet failed = all_ & ~held;
   for (std::size_t g = 0; g < faces_.size(); ++g) {
     if (!(held >> g & 1)) continue;
-    for (const std::uint32_t t : triangles_[g]) {
-      if (!take_facet(t, nullptr) || !clip_to(failed, true)) continue;
-      if (is_inside(middle_of(polygon_) - apart_mm_ * planes_.faces[faces_[g]].n)) return true;
-    }
+    for (Facet& facet : facets_[g])
+      if (take_facet(facet, failed, true) &&
+          is_inside(middle_of(polygon_) - apart_mm_ * plane_of_[g].n))
+        return true;
   }
   Vec3 y;
   return middle(0, failed, 0, y) && is_inside(y);
@@ -274,7 +292,7 @@ bool SharpWindow::middle(FaceSet inside_of, FaceSet outside_of, FaceSet in_plane
     add(-Vec3::Unit(k), -box_.lo[k], 1.0);
   }
   for (std::size_t i = 0; i < faces_.size(); ++i) {
-    const PlaneFace& face = planes_.faces[faces_[i]];
+    const PlaneFace& face = plane_of_[i];
     if (inside_of >> i & 1) add(face.n, face.c, 1.0);
     if (outside_of >> i & 1) add(-face.n, -face.c, 1.0);
     if (in_plane_of >> i & 1) add(face.n, face.c + apart_mm_, 0.0);

@@ -62,11 +62,18 @@ class SharpWindow {
   FaceSet both_ways(FaceSet half_spaces) const;
   void clauses_in_plane(FaceSet held, std::vector<FaceSet>& found) const;
   void clauses_of_facet(std::size_t face, std::vector<FaceSet>& found) const;
-  // What is left of polygon_ in the box; of a facet, unless a plane that all must hold cuts it off;
-  // inside of the half-spaces, or outside of them.
+  /// What of a triangle lies in the box, and its place beside the half-spaces. Found out once:
+  /// whether none of it is inside, or all; whether none of it is outside, or all.
+  struct Facet {
+    std::uint32_t first = 0, count = 0;  // of corners_
+    bool placed = false;
+    FaceSet none_inside = 0, all_inside = 0, none_outside = 0, all_outside = 0;
+  };
+  // What is left of polygon_ in the box.
   bool clip_to_box();
-  bool take_facet(std::uint32_t triangle, const PlaneFace* cuts_off);
-  bool clip_to(FaceSet half_spaces, bool outside);
+  void place(Facet& facet) const;
+  // polygon_: what is left of a facet inside of the half-spaces, or outside of them.
+  bool take_facet(Facet& facet, FaceSet half_spaces, bool outside);
   FaceSet outside_of(const Vec3& x) const;
   bool is_inside(const Vec3& x) const;
   /// A point well inside of half-spaces, outside of others, in the plane of others, and in the box.
@@ -79,12 +86,14 @@ class SharpWindow {
   double apart_mm_ = 0.0;
   double needed_reach_mm_ = 0.0;
   std::vector<std::uint32_t> faces_;
+  std::vector<PlaneFace> plane_of_;                    // by face
   std::vector<std::vector<std::uint32_t>> triangles_;  // by face
+  std::vector<std::vector<Facet>> facets_;             // by face, of the same triangles
+  std::vector<Vec3> corners_;                          // of all facets
   FaceSet all_ = 0;
   std::map<FaceSet, std::vector<FaceSet>> clauses_of_;  // by faces held
   std::map<FaceSet, bool> least_of_;
-  std::vector<Vec3> polygon_, spare_;    // at work
-  const PlaneFace* cuts_off_ = nullptr;  // the last one that cut all of a facet off
+  std::vector<Vec3> polygon_, spare_;  // at work
 };
 
 }  // namespace mortise
