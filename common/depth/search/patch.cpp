@@ -365,9 +365,6 @@ Patch placed(const PieceShape& shape, const Pose& X_KS) {
     patch.plus[i] = {X_KS.q * shape.plus[i].normal, shape.plus[i].offset_mm, shape.plus[i].flat};
   if (shape.on_cylinder) patch.axis = X_KS.q * shape.axis;
   if (shape.on_cone) patch.cone_axis = X_KS.q * shape.axis;
-  patch.rim_count = shape.rim_count;
-  for (int i = 0; i < shape.rim_count; ++i)
-    patch.rims_from[i] = patch.rims_to[i] = shape.rims[i].seen_from(X_KS);
   return patch;
 }
 
@@ -409,7 +406,6 @@ PieceShape shape_of(const Body& s, Layer layer, const Piece& piece) {
         s.sharp_left_out(piece.triangle) * s.largest_offset_mm[static_cast<int>(layer)];
   }
   if (surface != nullptr && !surface->inward) add_circles(*surface, offset, piece, cuts, shape);
-  shape.rim_count = rims_of(s, layer, piece.triangle, shape.rims);
   return shape;
 }
 
@@ -475,19 +471,6 @@ double Patch::depth_below_plane(const Vec3& facet_normal, const Vec3& point,
   return std::min(by_points + more, by_circles + outward);
 }
 
-double Patch::depth_at_rims_mm(const Surface& round) const {
-  double least = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < rim_count; ++i) {
-    double below_mm = 0.0;
-    for (int j = 0; j < count; ++j)
-      for (const Rim& rim : {rims_from[i], rims_to[i]})
-        below_mm = std::max(below_mm, rim.axis.dot(rim.center - points[j]));
-    least = std::min(least, depth_at_rim_mm(rims_from[i], rims_to[i], round, below_mm + thickness(),
-                                            motion_turn_rad, spread_mm));
-  }
-  return least;
-}
-
 double Patch::thickness() const {
   double sum = spread_mm + bulge_mm + slip_mm;
   for (int i = 0; i < plus_count; ++i) sum += plus[i].offset_mm;
@@ -530,7 +513,6 @@ Patch make_swept_patch(const PieceShape& shape, const Pose& X_KS0, const Pose& X
   }
   add_circles(shape, X_KS0, patch);
   add_circles(shape, X_KS1, patch);
-  for (int i = 0; i < shape.rim_count; ++i) patch.rims_to[i] = shape.rims[i].seen_from(X_KS1);
   patch.spread_mm += spread_mm;
   patch.turn_rad += turn_rad;
   patch.motion_turn_rad = turn_rad;

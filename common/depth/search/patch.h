@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "common/depth/body.h"
-#include "common/depth/search/rim.h"
 
 namespace mortise {
 
@@ -46,10 +45,6 @@ struct Patch {
   };
   std::array<Circle, 4> circles;
   int circle_count = 0;
-  /// Where a bore ends in a plane, of which the patch is of one: at both ends of an interval.
-  static constexpr int kMostRims = 4;
-  std::array<Rim, kMostRims> rims_from, rims_to;
-  int rim_count = 0;
   Vec3 center = Vec3::Zero();  ///< a point of the layer's surface (at the start of the interval)
   double radius_mm = 0.0;      ///< of all points about center, thickness included
 
@@ -64,9 +59,6 @@ struct Patch {
   /// How far the patch may reach below the plane through `point`, by its points or by its circles.
   double depth_below_plane(const Vec3& facet_normal, const Vec3& point,
                            double facet_turn_rad) const;
-  /// No point of the patch is deeper below a convex cone or cylinder, by the rims alone; infinite
-  /// where it has none.
-  double depth_at_rims_mm(const Surface& round) const;
   /// Largest thickness in any direction.
   double thickness() const;
 };
@@ -89,8 +81,6 @@ struct PieceShape {
   int plus_count = 0;
   std::array<Patch::Circle, 2> circles;
   int circle_count = 0;
-  std::array<Rim, Patch::kMostRims> rims;
-  int rim_count = 0;
 
   bool empty() const { return polygon.empty(); }
 };

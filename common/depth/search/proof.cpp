@@ -229,8 +229,6 @@ class Neighbourhood {
       deepest = patch_.depth_below_plane(facet.normal, facet.point, 0.0) + bend_mm;
       if (deepest + facet.offset_mm > std::min(0.0, proof_.limit_mm))
         deepest = std::min(deepest, depth_below_facing_tangent(patch_, surface));
-      if (has_straight_lines(surface) && deepest + facet.offset_mm > proof_.limit_mm)
-        deepest = std::min(deepest, patch_.depth_at_rims_mm(surface));
     }
     return deepest + facet.offset_mm;
   }
