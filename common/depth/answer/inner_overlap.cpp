@@ -7,7 +7,6 @@
 #include <queue>
 #include <vector>
 
-#include "common/depth/search/face_below.h"
 #include "common/geometry/signed_distance.h"
 
 namespace mortise {
@@ -37,7 +36,7 @@ struct LessPromising {
   }
 };
 
-using CellCorners = FaceBelow::Corners;
+using CellCorners = std::array<Vec3, 8>;
 
 CellCorners corners_of(const Cell& cell) {
   CellCorners corners;
@@ -176,7 +175,7 @@ class InnerSearch {
 
   // Distance of the corners from the nearest face of the centre and from the one that is nearest on
   // the far side of it. No point in the part is deeper than its distance from any face, and the
-  // mean of two such distances bounds it as well: exact between two parallel faces.
+  // mean of two such distances bounds it as well: exact between two parallel triangles.
   using Bounds = std::array<std::array<double, 8>, 3>;
   Bounds bounds_of(int body, const Cell& cell, const SurfacePoint& at, double radius_mm) {
     const Vec3 center = body == 0 ? Vec3(pair_.X_KS[1] * cell.center) : cell.center;
@@ -188,28 +187,22 @@ class InnerSearch {
     CellCorners corners = corners_of(cell);
     if (body == 0)
       for (Vec3& x : corners) x = pair_.X_KS[1] * x;
-    bounds[0] = distances_mm(body, at.triangle, corners, center);
-    bounds[1] = distances_mm(body, other.triangle, corners, center);
+    bounds[0] = distances_mm(body, at.triangle, corners);
+    bounds[1] = distances_mm(body, other.triangle, corners);
     for (std::size_t i = 0; i < corners.size(); ++i)
       bounds[2][i] = 0.5 * (bounds[0][i] + bounds[1][i]);
     return bounds;
   }
 
-  // Of the corners from the plane face of the triangle, where it lies below all of the box;
-  // otherwise from the triangle.
-  std::array<double, 8> distances_mm(int body, std::uint32_t triangle, const CellCorners& corners,
-                                     const Vec3& center) const {
+  std::array<double, 8> distances_mm(int body, std::uint32_t triangle,
+                                     const CellCorners& corners) const {
     std::array<double, 8> distances;
-    FaceBelow face(*pair_.bodies[body].solid, triangle);
-    const bool is_over = face.holds(corners, center);
     const TriangleMesh& mesh = *pair_.bodies[body].mesh;
     for (std::size_t i = 0; i < corners.size(); ++i)
-      distances[i] = is_over
-                         ? face.distance_mm(corners[i])
-                         : (corners[i] - nearest_on_triangle(corners[i], mesh.corner(triangle, 0),
-                                                             mesh.corner(triangle, 1),
-                                                             mesh.corner(triangle, 2)))
-                               .norm();
+      distances[i] =
+          (corners[i] - nearest_on_triangle(corners[i], mesh.corner(triangle, 0),
+                                            mesh.corner(triangle, 1), mesh.corner(triangle, 2)))
+              .norm();
     return distances;
   }
 
