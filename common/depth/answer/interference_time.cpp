@@ -68,75 +68,49 @@ bool later(const SpanItem& a, const SpanItem& b) {
   return a.order > b.order;
 }
 
-// Of a tube there is one at a pose, but it is not convex in the displacement.
-bool has_closed_form(const Surface& a, const Surface& b) {
-  if (a.kind == SurfaceKind::kTorus || b.kind == SurfaceKind::kTorus) return false;
-  return a.inward != b.inward && (a.kind == b.kind || is_round_in_bore(a, b));
+// What no cover follows closely: other round faces keep apart by theirs.
+bool is_ball_in_socket(const Surface& a, const Surface& b) {
+  return a.kind == SurfaceKind::kSphere && b.kind == SurfaceKind::kSphere && a.inward != b.inward;
 }
 
-// Two declared faces with a closed form: upper bounds of how far they overlap in the layer, over an
-// interval of time and at a pose of it.
-class FaceBounds {
+// A ball and its socket: how far they overlap in the layer.
+class SocketBounds {
  public:
-  FaceBounds(const Body (&bodies)[2], Layer layer, std::array<std::uint16_t, 2> faces,
-             const Surface& sa, const Surface& sb, const PairPath& path, double touch_mm)
+  SocketBounds(const Body (&bodies)[2], Layer layer, std::array<std::uint16_t, 2> faces,
+               const Surface& sa, const Surface& sb, const PairPath& path, double touch_mm)
       : sa_(sa),
         sb_(sb),
         ea_(extent_of(bodies[0], faces[0], sa)),
         eb_(extent_of(bodies[1], faces[1], sb)),
         path_(path),
         touch_mm_(touch_mm) {
-    const double a_mm = Body::offset_of(bodies[0].band->faces[faces[0]], layer);
-    const double b_mm = Body::offset_of(bodies[1].band->faces[faces[1]], layer);
-    offsets_mm = a_mm + b_mm;
-    in_bore_ = {&sa_, &sb_, ea_, eb_, std::max(0.0, sa.inward ? -b_mm : -a_mm), 0.0};
+    for (int i = 0; i < 2; ++i)
+      offsets_mm += Body::offset_of(bodies[i].band->faces[faces[i]], layer);
   }
 
-  double within_mm(const Span& span, double t) const {
-    return in_bore(span, t).within_mm + offsets_mm;
-  }
-  double along_mm(const Span& span, double t) const {
-    return in_bore(span, t).along_mm + offsets_mm;
-  }
+  /// Upper bound at t of everything that is near at any time of the span.
   double overlap_mm(const Span& span, double t) const {
-    const double hi_mm = near_overlap_upper_bound_mm(sa_, ea_, sb_, eb_, path_.pose(0, t),
-                                                     margin_mm(span), touch_mm_ - offsets_mm);
-    return (std::isfinite(hi_mm) ? hi_mm : in_bore(span, t).face_mm) + offsets_mm;
+    const double margin_mm = path_.speed_upper_bound() * (span.t1 - span.t0) + touch_mm_;
+    const auto overlap = face_pair_overlap(sa_, ea_, sb_, eb_, path_.pose(0, t), margin_mm);
+    return overlap ? overlap->near_hi_mm + offsets_mm : kInfinity;
   }
   std::optional<FacePairOverlap> overlap_at(double t) const {
     return face_pair_overlap(sa_, ea_, sb_, eb_, path_.pose(0, t), touch_mm_);
   }
 
+  // All of the ball, and the socket between its ends.
   void set_where_it_holds(KnownOverlaps::Row& row) const {
-    for (int i = 0; i < 2; ++i) {
-      const FaceExtent& extent = i == 0 ? ea_ : eb_;
-      const bool ball = sa_.kind == SurfaceKind::kSphere && (i == 0) != sa_.inward;
-      // Bounds of a cone in a bore know no ends of the bore, and no margin.
-      const bool cone_in_bore = sa_.kind != sb_.kind;
-      const bool convex = (i == 0) != sa_.inward;
-      if (ball || (cone_in_bore && !convex)) continue;
-      const double more = cone_in_bore ? 0.0 : touch_mm_;
-      row.holds_along_mm[i] = {extent.lo_mm - more, extent.hi_mm + more};
-    }
+    const FaceExtent& socket = sa_.inward ? ea_ : eb_;
+    row.holds_along_mm[sa_.inward ? 0 : 1] = {socket.lo_mm - touch_mm_, socket.hi_mm + touch_mm_};
   }
 
   double offsets_mm = 0.0;  ///< of both layers from the declared surfaces
 
  private:
-  double margin_mm(const Span& span) const {
-    return path_.speed_upper_bound() * (span.t1 - span.t0) + touch_mm_;
-  }
-  InBoreBound in_bore(const Span& span, double t) const {
-    InBoreQuery query = in_bore_;
-    query.margin_mm = margin_mm(span);
-    return in_bore_bound(query, path_.pose(0, t));
-  }
-
   const Surface &sa_, &sb_;
   const FaceExtent ea_, eb_;
   const PairPath& path_;
   double touch_mm_;
-  InBoreQuery in_bore_;
 };
 
 // A region in which the surfaces of the layer interfere; null: there is none.
@@ -231,10 +205,10 @@ class InterferenceSearch {
   }
 
  private:
-  // Pairs of declared faces with a closed form. The distance of the axes is a convex function of
-  // the displacement, so that over an interval it is largest at an end, up to the path's own
-  // curvature. Until the first time that this does not exclude, the pair needs no search; that time
-  // ends the search when the pair is really certain there.
+  // Balls in sockets. The distance of their centres is a convex function of the displacement, so
+  // that over an interval it is largest at an end, up to the path's own curvature. Until the first
+  // time that this does not exclude, the pair needs no search; that time ends the search when the
+  // pair is really certain there.
   void find_known() {
     if (trivial_) return;
     const auto count_a = static_cast<std::uint16_t>(bodies_[0].band->faces.size());
@@ -243,13 +217,13 @@ class InterferenceSearch {
       for (std::uint16_t j = 0; j < count_b; ++j) {
         const Surface* sa = Body::surface_of(bodies_[0].band->faces[i], layer_);
         const Surface* sb = Body::surface_of(bodies_[1].band->faces[j], layer_);
-        if (sa != nullptr && sb != nullptr && has_closed_form(*sa, *sb))
+        if (sa != nullptr && sb != nullptr && is_ball_in_socket(*sa, *sb))
           add_known({i, j}, *sa, *sb);
       }
   }
 
   void add_known(std::array<std::uint16_t, 2> faces, const Surface& sa, const Surface& sb) {
-    const FaceBounds bounds(bodies_, layer_, faces, sa, sb, path_, touch_mm_);
+    const SocketBounds bounds(bodies_, layer_, faces, sa, sb, path_, touch_mm_);
     const double offsets = bounds.offsets_mm;
     KnownOverlaps::Row row{{faces[0], faces[1]}, 0.0};
     bounds.set_where_it_holds(row);
@@ -257,12 +231,7 @@ class InterferenceSearch {
     const Span first =
         excluded.first([&](const Span& span, double t) { return bounds.overlap_mm(span, t); });
     row.overlap_mm = excluded.most_mm - offsets;
-    // As long as the faces themselves keep clear nothing else need be known.
-    const auto within = [&](const Span& span, double t) { return bounds.within_mm(span, t); };
-    if (excluded.first(within).t0 >= first.t0) row.within_mm = excluded.most_mm - offsets;
-    const auto along = [&](const Span& span, double t) { return bounds.along_mm(span, t); };
-    if (excluded.first(along).t0 >= first.t0) row.along_mm = excluded.most_mm - offsets;
-    answer_.evaluations += excluded.work() + 3 * Exclusion::kWork;
+    answer_.evaluations += excluded.work() + Exclusion::kWork;
     // Only where the faces do meet is it worth while to ask whether the overlap is certain.
     const auto meet_at = [&](double t) {
       KnownFacePair pair;

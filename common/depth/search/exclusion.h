@@ -25,7 +25,6 @@ struct Exclusion {
   /// span. A convex bound is largest at one of the two ends, up to the curvature of the path.
   template <class OverlapOver>
   Span first(const OverlapOver& overlap_over) {
-    most_mm = -std::numeric_limits<double>::infinity();
     const Span begin{0.0, std::min(1.0, moment)};
     if (overlap_over(begin, 0.0) > touch_mm) return begin;
     return first(overlap_over, {0.0, 1.0});

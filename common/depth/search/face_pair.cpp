@@ -191,27 +191,6 @@ std::optional<FacePairOverlap> face_pair_overlap(const Surface& a, const FaceExt
   return found;
 }
 
-double near_overlap_upper_bound_mm(const Surface& a, const FaceExtent& extent_a, const Surface& b,
-                                   const FaceExtent& extent_b, const Pose& X_BA, double margin_mm,
-                                   double limit_mm) {
-  constexpr double kNone = std::numeric_limits<double>::infinity();
-  if (a.kind != b.kind || a.inward == b.inward) return kNone;
-  if (a.kind == SurfaceKind::kSphere) {
-    const auto overlap = face_pair_overlap(a, extent_a, b, extent_b, X_BA, margin_mm);
-    return overlap ? overlap->near_hi_mm : kNone;
-  }
-  const Surface a_B = moved(a, X_BA);
-  const Surface &convex = a.inward ? b : a_B, &hollow = a.inward ? a_B : b;
-  const FaceExtent &along = a.inward ? extent_b : extent_a,
-                   &of_hollow = a.inward ? extent_a : extent_b;
-  const auto face = RoundFace::of(convex, {along.lo_mm, along.hi_mm});
-  const auto wall = RoundFace::of(hollow, {of_hollow.lo_mm, of_hollow.hi_mm});
-  if (!face || !wall) return kNone;
-  const double beyond = std::max(of_hollow.beyond_mm[0], of_hollow.beyond_mm[1]);
-  const auto near = round_reach(*face, *wall, margin_mm + beyond, kRoundAccuracy_mm, limit_mm);
-  return near && std::isfinite(near->reach_mm.hi) ? near->reach_mm.hi : kNone;
-}
-
 bool is_round_in_bore(const Surface& a, const Surface& b) {
   if (a.inward == b.inward) return false;
   const Surface& bore = a.inward ? a : b;

@@ -50,12 +50,6 @@ std::optional<FacePairOverlap> face_pair_overlap(
     const Surface& a, const FaceExtent& extent_a, const Surface& b, const FaceExtent& extent_b,
     const Pose& X_BA, double margin_mm, const std::array<PairOffsets, 2>* layers = nullptr);
 
-/// Its near_hi_mm alone, refined only until it is known whether it exceeds limit_mm. Infinity:
-/// there is no closed form.
-double near_overlap_upper_bound_mm(const Surface& a, const FaceExtent& extent_a, const Surface& b,
-                                   const FaceExtent& extent_b, const Pose& X_BA, double margin_mm,
-                                   double limit_mm);
-
 /// The largest depth in a ball of a point outside the sphere of its socket, mm, and the heights
 /// along the socket's axis between which that holds: the ends of its face and `margin_mm` more.
 /// Nothing when it holds nowhere.

@@ -20,9 +20,6 @@ constexpr double kParallel_mm = 1e-9;
 constexpr int kFirstPieces = 16;
 constexpr int kMostPieces = 600;
 
-// Of what the reach lacks of a limit: a bracket as wide says that it is not reached.
-constexpr double kEnoughShare = 0.25;
-
 // A direction around the convex axis, and what is asked of it again and again.
 struct Turn {
   explicit Turn(double angle_rad)
@@ -69,7 +66,7 @@ class RoundSearch {
         square2_(flat2_.squaredNorm()),
         second_(std::hypot(0.5 * (square1_ - square2_), flat1_.dot(flat2_))) {}
 
-  std::optional<RoundReach> run(double margin_mm, double accuracy_mm, double limit_mm) {
+  std::optional<RoundReach> run(double margin_mm, double accuracy_mm) {
     margin_mm_ = margin_mm;
     if (const auto reach = parallel_cylinders()) return reach;
     std::vector<ArcPiece> pieces;
@@ -84,10 +81,7 @@ class RoundSearch {
     const auto lower = [](const ArcPiece& a, const ArcPiece& b) { return a.bound < b.bound; };
     std::make_heap(pieces.begin(), pieces.end(), lower);
     for (int looked = kFirstPieces; !pieces.empty() && looked < kMostPieces; looked += 2) {
-      if (pieces.front().bound <= most_ + accuracy_mm || most_ > limit_mm) break;
-      if (std::isfinite(limit_mm) &&
-          pieces.front().bound <= most_ + kEnoughShare * (limit_mm - most_))
-        break;
+      if (pieces.front().bound <= most_ + accuracy_mm) break;
       std::pop_heap(pieces.begin(), pieces.end(), lower);
       const ArcPiece piece = pieces.back();
       pieces.pop_back();
@@ -295,14 +289,14 @@ std::optional<RoundFace> RoundFace::of(const Surface& surface, const Interval& e
 }
 
 std::optional<RoundReach> round_reach(const RoundFace& convex, const RoundFace& hollow,
-                                      double margin_mm, double accuracy_mm, double limit_mm) {
+                                      double margin_mm, double accuracy_mm) {
   const double slope = convex.axis.dot(hollow.axis);
   if (std::fabs(slope) < kSlidingFitCosine) return std::nullopt;
   // A generator that runs square to the hollow axis meets no height of it.
   const double tilt = std::sqrt(std::max(0.0, 1.0 - slope * slope));
   // Half of square is far enough from it: the search's heights stay finite.
   if (std::fabs(convex.widening) * tilt > 0.5 * std::fabs(slope)) return std::nullopt;
-  return RoundSearch(convex, hollow).run(margin_mm, accuracy_mm, limit_mm);
+  return RoundSearch(convex, hollow).run(margin_mm, accuracy_mm);
 }
 
 }  // namespace mortise

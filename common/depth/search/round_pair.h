@@ -1,5 +1,4 @@
 #pragma once
-#include <limits>
 #include <optional>
 
 #include "common/geometry/feature.h"
@@ -40,11 +39,7 @@ struct RoundReach {
 /// bounded by its values at the corners of triangles about arcs; it is a square root of a
 /// trigonometric polynomial of second degree and bends little where the axes nearly meet, so branch
 /// and bound over the angle closes hi to accuracy_mm in a few dozen steps. Exact to rounding.
-///
-/// With limit_mm only the comparison with that limit is asked: the bracket stays wide where the
-/// reach exceeds it, and otherwise as wide as a quarter of the difference.
 std::optional<RoundReach> round_reach(const RoundFace& convex, const RoundFace& hollow,
-                                      double margin_mm, double accuracy_mm,
-                                      double limit_mm = std::numeric_limits<double>::infinity());
+                                      double margin_mm, double accuracy_mm);
 
 }  // namespace mortise

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <random>
 
@@ -124,13 +125,6 @@ TEST(RoundPair, BracketIsTightHoweverFarTheyAreFromFitting) {
     ++bounded;
     EXPECT_LE(sampled(c, 0.0, 720, 200), reach->reach_mm.hi + 1e-9);
     EXPECT_LE(reach->reach_mm.width(), 1e-2);
-    // What only asks about a limit may be wide, and is on the same side of it.
-    for (const double limit : {reach->reach_mm.lo - 0.1, reach->reach_mm.hi + 0.1}) {
-      const auto asked = round_reach(c.convex, c.hollow, 0.0, 1e-5, limit);
-      ASSERT_TRUE(asked);
-      EXPECT_GE(asked->reach_mm.hi, reach->reach_mm.lo);
-      EXPECT_EQ(asked->reach_mm.hi > limit, reach->reach_mm.hi > limit);
-    }
   }
   EXPECT_GE(bounded, test::effort(300) * 9 / 10);
 }
