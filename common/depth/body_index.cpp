@@ -101,14 +101,17 @@ std::shared_ptr<BodyIndex> body_index(const Solid& solid, const SurfaceBand& ban
       held.asked = shelf.asked;
       return held.index;
     }
-  MORTISE_CHECK(valid(band, solid.mesh().triangles.size()),
-                "a band has a face for every triangle of its part");
   if (shelf.held.size() >= kMostHeld)
     shelf.held.erase(std::min_element(
         shelf.held.begin(), shelf.held.end(),
         [](const Shelf::Held& a, const Shelf::Held& b) { return a.asked < b.asked; }));
   std::shared_ptr<BodyIndex> index = take_laid_out(solid, band);
-  if (!index) index = std::make_shared<BodyIndex>();
+  if (!index) {
+    // Who laid one out has looked: each triangle is asked.
+    MORTISE_CHECK(valid(band, solid.mesh().triangles.size()),
+                  "a band has a face for every triangle of its part");
+    index = std::make_shared<BodyIndex>();
+  }
   shelf.held.push_back(
       {&solid, solid.hash(), band.faces, band.face_of_triangle, std::move(index), shelf.asked});
   return shelf.held.back().index;

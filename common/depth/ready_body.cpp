@@ -1,6 +1,7 @@
 #include "common/depth/depth.h"
 
 #include "common/depth/body.h"
+#include "common/depth/search/tip_reach.h"
 
 namespace mortise {
 
@@ -13,6 +14,9 @@ void make_body_ready(const Solid& solid, const SurfaceBand& band, int threads) {
       (void)body.plane_faces();
       for (std::uint16_t face = 0; face < faces; ++face) (void)body.ends_of(face);
       (void)cover_of(body);
+      (void)tips_of(body);
+      // With it the room for those of all triangles: to touch so much memory takes a tick.
+      if (!band.trivial) (void)body.sharp_neighbours(0);
     }
     lay_out_index(solid, band);
   }

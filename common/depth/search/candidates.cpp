@@ -1,8 +1,10 @@
 #include "common/depth/search/candidates.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
+#include <memory>
 
 #include "common/geometry/triangle_distance.h"
 #include "common/geometry/triangle_meeting.h"
@@ -17,6 +19,27 @@ constexpr std::int32_t kMixed = Body::kMixed;
 
 enum class Mark : std::uint8_t { kNone = 0, kNear, kCrossing };
 
+// The marks of all triangles of a part. Only pages with a mark are there: a look at two parts of a
+// million triangles reaches some hundred of them.
+class Marks {
+ public:
+  void begin(std::size_t triangles) { pages_.resize((triangles + kPage - 1) / kPage); }
+  Mark operator[](std::uint32_t triangle) const {
+    const auto& page = pages_[triangle / kPage];
+    return page ? (*page)[triangle % kPage] : Mark::kNone;
+  }
+  Mark& change(std::uint32_t triangle) {
+    auto& page = pages_[triangle / kPage];
+    if (!page) page = std::make_unique<Page>();
+    return (*page)[triangle % kPage];
+  }
+
+ private:
+  static constexpr std::uint32_t kPage = 1024;  // cleared as fast as one triangle is looked at
+  using Page = std::array<Mark, kPage>;
+  std::vector<std::unique_ptr<Page>> pages_;
+};
+
 struct Side {
   std::int32_t child = 0;
   std::int32_t face = kMixed;
@@ -28,7 +51,7 @@ class Finder {
   explicit Finder(const CandidateQuery& query)
       : query_(query), pair_(*query.pair), R_(pair_.X_KS[0].rotation()), R_abs_(R_.cwiseAbs()) {
     for (int i = 0; i < 2; ++i) {
-      marked_[i].assign(pair_.bodies[i].mesh->triangles.size(), Mark::kNone);
+      marked_[i].begin(pair_.bodies[i].mesh->triangles.size());
       if (!pair_.trivial && has_surfaces(pair_.bodies[i]))
         faces_[i] = &pair_.bodies[i].face_of_child();
     }
@@ -219,7 +242,7 @@ class Finder {
   }
 
   void set(int i, std::uint32_t t, Mark mark, std::uint32_t partner) {
-    Mark& now = marked_[i][t];
+    Mark& now = marked_[i].change(t);
     if (now >= mark) return;
     if (now == Mark::kNone) found_.triangles[i].push_back(t);
     if (mark == Mark::kCrossing) found_.crossing[i][t] = partner;
@@ -265,7 +288,7 @@ class Finder {
   const Mat3 R_, R_abs_;
   // Null where no face has a surface.
   const std::vector<std::array<std::int32_t, Bvh::kWidth>>* faces_[2] = {nullptr, nullptr};
-  std::vector<Mark> marked_[2];
+  Marks marked_[2];
   std::map<std::pair<std::int32_t, std::int32_t>, Slot> known_;
   Candidates found_;
 };

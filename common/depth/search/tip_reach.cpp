@@ -3,21 +3,19 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <vector>
 
 #include "common/depth/cells/least_reach.h"
 #include "common/depth/triangles_in.h"
-#include "common/geometry/tips.h"
 
 namespace mortise {
-namespace {
 
-// Of the largest part; found once.
 const std::vector<Tip>& tips_of(const Body& body) {
   std::unique_ptr<const std::vector<Tip>>& tips = body.index().tips;
   if (!tips) tips = std::make_unique<const std::vector<Tip>>(find_tips(*body.solid, *body.band));
   return *tips;
 }
+
+namespace {
 
 // Pieces of all tips of a pair that are looked at.
 constexpr std::uint64_t kMostLooks = 4000;
