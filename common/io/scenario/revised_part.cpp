@@ -203,7 +203,7 @@ PartShape revised_by_file(const PartMemory& memory, const PartShape& own) {
   shape.solid = own.solid;
   std::vector<Named> faces = stated_faces(memory, own, shape.notes);
   const std::shared_ptr<StatedPart> stated = stated_of(memory, faces);
-  for (Named& face : faces) shape.features.push_back(std::move(face.feature));
+  for (Named& face : faces) shape.features.change().push_back(std::move(face.feature));
   shape.band =
       with_statements(own.band, *own.solid, for_band(stated->rest), for_band(stated->of_feature));
   for (SurfaceBand::Face& face : shape.band.faces)
@@ -236,7 +236,7 @@ PartShape revised(const PartMemory& memory, SolidPtr solid, double quantum_mm) {
   const std::shared_ptr<StatedPart> stated = stated_of(memory, faces);
   PartShape shape;
   shape.solid = solid;
-  for (Named& face : faces) shape.features.push_back(std::move(face.feature));
+  for (Named& face : faces) shape.features.change().push_back(std::move(face.feature));
   shape.band = is_first ? with_statements(memory.first->band, *solid, for_band(stated->rest),
                                           for_band(stated->of_feature))
                         : build_band({solid.get(),

@@ -23,7 +23,7 @@ struct PartMemory {
   /// the surfaces of a generator, of an exact file.
   struct First {
     std::string mesh;
-    std::vector<Feature> features;
+    SharedVector<Feature> features;
     SurfaceBand band;
     std::vector<Scenario::FeatureSpec> declared;  ///< what was stated then
   };

@@ -23,7 +23,7 @@ bool same(const Surface& a, const Surface& b) {
 }
 
 // Do both have the same features? Their meshes are the same.
-bool alike(const Part& a, const Part& b) {
+bool alike(const FeatureSources::OfPart& a, const FeatureSources::OfPart& b) {
   return std::equal(a.features.begin(), a.features.end(), b.features.begin(), b.features.end(),
                     [](const Feature& x, const Feature& y) {
                       return x.name == y.name && x.origin == y.origin && same(x.surface, y.surface);
@@ -53,8 +53,9 @@ FeatureInfo told(const Feature& feature, const TriangleMesh& mesh) {
 }
 
 // Of one part: what the load knows, then what its mesh shows beside.
-std::vector<FeatureInfo> features_of(const Part& part, const std::vector<Feature>* shown) {
+std::vector<FeatureInfo> features_of(const FeatureSources::OfPart& part) {
   const TriangleMesh& mesh = part.solid->mesh();
+  const std::vector<Feature>* shown = part.shown.get();
   std::vector<FeatureInfo> features;
   std::vector<bool> taken(shown != nullptr ? mesh.triangles.size() : 0, false);
   std::set<std::string> names;
@@ -74,42 +75,53 @@ std::vector<FeatureInfo> features_of(const Part& part, const std::vector<Feature
 }
 
 struct Kind {
-  const Part* first;
+  const FeatureSources::OfPart* first;
   std::vector<PartId> parts;
 };
 
 // Alike parts together, in the order of the first of each kind.
-std::vector<Kind> kinds_of(const World& world) {
+std::vector<Kind> kinds_of(const FeatureSources& sources) {
   std::vector<Kind> kinds;
   std::map<std::string, std::vector<std::size_t>> by_mesh;
-  for (const Part& part : world.parts) {
-    if (!part.present) continue;
+  for (const FeatureSources::OfPart& part : sources.parts) {
     std::vector<std::size_t>& candidates = by_mesh[part.solid->hash()];
     const auto known = std::find_if(candidates.begin(), candidates.end(),
                                     [&](std::size_t k) { return alike(*kinds[k].first, part); });
     if (known != candidates.end()) {
-      kinds[*known].parts.push_back(part.id);
+      kinds[*known].parts.push_back(part.part);
       continue;
     }
     candidates.push_back(kinds.size());
-    kinds.push_back({&part, {part.id}});
+    kinds.push_back({&part, {part.part}});
   }
   return kinds;
 }
 
 }  // namespace
 
+FeatureSources feature_sources(const World& world) {
+  FeatureSources sources;
+  for (const Part& part : world.parts) {
+    if (!part.present) continue;
+    const auto shown = world.recognized.find(part.solid->hash());
+    sources.parts.push_back({part.id, part.solid, part.features,
+                             shown == world.recognized.end() ? nullptr : shown->second});
+  }
+  return sources;
+}
+
 FeatureTable feature_table(const World& world, std::size_t most) {
+  return feature_table(feature_sources(world), most);
+}
+
+FeatureTable feature_table(const FeatureSources& sources, std::size_t most) {
   FeatureTable table;
   std::size_t entries = 0;
   std::set<std::string> waiting, too_large;
-  for (Kind& kind : kinds_of(world)) {
+  for (Kind& kind : kinds_of(sources)) {
     const Solid& solid = *kind.first->solid;
-    const auto shown = world.recognized.find(solid.hash());
-    const bool is_shown = shown != world.recognized.end() && shown->second != nullptr;
-    if (!is_shown) (may_be_recognized(solid) ? waiting : too_large).insert(solid.hash());
-    std::vector<FeatureInfo> features =
-        features_of(*kind.first, is_shown ? shown->second.get() : nullptr);
+    if (!kind.first->shown) (may_be_recognized(solid) ? waiting : too_large).insert(solid.hash());
+    std::vector<FeatureInfo> features = features_of(*kind.first);
     if (features.empty()) continue;
     if (entries + features.size() > most) {
       table.left_out += static_cast<std::uint32_t>(features.size());

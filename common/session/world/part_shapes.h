@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/base/ids.h"
+#include "common/base/shared_vector.h"
 #include "common/geometry/feature.h"
 #include "common/geometry/solid.h"
 #include "common/geometry/surface_band.h"
@@ -20,7 +21,7 @@ struct StatedPart;  ///< io/scenario/scene_rules.h
 /// which something was stated.
 struct PartShape {
   SolidPtr solid;
-  std::vector<Feature> features;
+  SharedVector<Feature> features;
   SurfaceBand band;
   std::shared_ptr<const StatedPart> stated = {};  ///< what was stated; null: nothing
   std::vector<std::string> notes = {};            ///< what people should know of it, one line each

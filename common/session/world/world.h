@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/base/shared_vector.h"
 #include "common/geometry/solid.h"
 #include "common/geometry/surface_band.h"
 #include "common/messages/command.h"
@@ -24,8 +25,8 @@ struct Part {
   PartId id;
   std::string name;
   SolidPtr solid;
-  SurfaceBand band;               ///< resolved: deviation and tolerance of its faces
-  std::vector<Feature> features;  ///< checked against the mesh
+  SurfaceBand band;                ///< resolved: deviation and tolerance of its faces
+  SharedVector<Feature> features;  ///< checked against the mesh
   bool moving = false;
   bool present = true;      ///< false: it was removed; its number stays, and it may come back
   std::uint32_t edits = 0;  ///< edits of the running session: it came, went, begins to move ...

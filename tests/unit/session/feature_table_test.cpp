@@ -53,11 +53,26 @@ TEST_F(Table, TellsNameOriginSurfaceExtentAndMiddle) {
   EXPECT_EQ(table.meshes_too_large + table.left_out, 0u);
 }
 
+TEST_F(Table, OfItsSourcesSaysWhatTheWorldSaid) {
+  const PartId peg = add_peg("peg"), other = add_peg("other");
+  part(peg).features = {mantle_of(*part(peg).solid, FeatureOrigin::kGenerated)};
+  const FeatureSources sources = feature_sources(session.world);
+  ASSERT_EQ(sources.parts.size(), 2u);
+  EXPECT_EQ(sources.parts[0].features.data(), part(peg).features.data()) << "not copied";
+  part(peg).features.change().clear();
+  part(other).present = false;
+  EXPECT_EQ(feature_sources(session.world).parts.size(), 1u);
+  const FeatureTable table = feature_table(sources);
+  ASSERT_EQ(table.sets.size(), 1u);
+  EXPECT_EQ(table.sets[0].parts, std::vector<PartId>{peg});
+  EXPECT_EQ(table.sets[0].features[0].along_mm, (Interval{-5.0, 35.0}));
+}
+
 TEST_F(Table, AlikePartsShareASetAndOthersDoNot) {
   const PartId a = add_peg("a"), b = add_peg("b"), c = add_peg("c"), bare = add_peg("bare");
   for (const PartId id : {a, b, c})
     part(id).features = {mantle_of(*part(id).solid, FeatureOrigin::kDeclared)};
-  part(c).features[0].surface.radius_mm = 10.01;
+  part(c).features.change()[0].surface.radius_mm = 10.01;
   const FeatureTable table = feature_table(session.world);
   ASSERT_EQ(table.sets.size(), 2u);
   EXPECT_EQ(table.sets[0].parts, (std::vector<PartId>{a, b}));
@@ -99,7 +114,7 @@ TEST_F(Table, WhatTheMeshShowsComesBesideWhatIsDeclared) {
 TEST_F(Table, ANameThatIsTakenIsToldOnce) {
   const PartId peg = add_peg("peg");
   part(peg).features = {mantle_of(*part(peg).solid, FeatureOrigin::kDeclared)};
-  part(peg).features[0].name = "plane_1";
+  part(peg).features.change()[0].name = "plane_1";
   (void)find_feature(session.world, peg, "shaft_1");  // as a first constraint does
   const FeatureTable table = feature_table(session.world);
   ASSERT_EQ(table.sets.size(), 1u);

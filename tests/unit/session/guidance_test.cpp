@@ -49,7 +49,7 @@ TEST_F(GuidedPair, SeveralConstraintsLeaveWhatAllOfThemLeave) {
 
 TEST_F(GuidedPair, NoFreedomLeftIsSaid) {
   auto& w = session.world;
-  session.world.find(ring)->features.push_back(
+  session.world.find(ring)->features.change().push_back(
       feature("flat", plane(Vec3(0, 20, 0), Vec3::UnitY())));
   add_constraint(w, ada, between(ConstraintKind::kCoaxial, "shaft", "bore"));
   add_constraint(w, ada, between(ConstraintKind::kCoplanar, "end", "top"));
@@ -120,7 +120,7 @@ TEST_F(GuidedPair, WhoMayAndWhatMayNot) {
 }
 
 TEST_F(GuidedPair, AFeatureThatOnlyTheMeshShowsIsFound) {
-  session.world.find(ring)->features.clear();
+  session.world.find(ring)->features.change().clear();
   const GuidanceReply reply =
       add_constraint(session.world, ada, between(ConstraintKind::kCoaxial, "shaft", "bore_1"));
   EXPECT_EQ(reply.refusal, Refusal::kNone) << reply.text;

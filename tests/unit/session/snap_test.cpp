@@ -76,7 +76,7 @@ TEST_F(Snap, FarPartsAreReachedByTheirName) {
 }
 
 TEST_F(Snap, WhatTheMeshShowsIsFoundOnceItWasLookedAt) {
-  session.world.find(ring)->features.clear();
+  session.world.find(ring)->features.change().clear();
   EXPECT_EQ(snap(wish(ConstraintKind::kCoaxial)).refusal, Refusal::kNothingNear);
   const Solid& solid = *session.world.find(ring)->solid;
   session.world.recognized[solid.hash()] =
