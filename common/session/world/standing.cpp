@@ -5,10 +5,15 @@
 
 namespace mortise {
 
+namespace {
+
+bool is_exclusion(Decision::Kind kind) {
+  return kind == Decision::Kind::kSetExclusion || kind == Decision::Kind::kDropExclusion;
+}
+
+}  // namespace
+
 bool same_target(const Decision& x, const Decision& y) {
-  const auto is_exclusion = [](Decision::Kind kind) {
-    return kind == Decision::Kind::kSetExclusion || kind == Decision::Kind::kDropExclusion;
-  };
   const Details &a = x.details, &b = y.details;
   if (is_exclusion(x.kind) && is_exclusion(y.kind))
     return std::minmax(x.part, a.other_part) == std::minmax(y.part, b.other_part);
@@ -21,11 +26,10 @@ namespace {
 // A fit is the same whichever of its ends is named first.
 bool replaces(const Decision& later, const Decision& declared) {
   if (same_target(later, declared)) return true;
-  Decision turned = later;
-  turned.part = later.details.other_part;
-  turned.details.other_part = later.part;
-  std::swap(turned.details.feature, turned.details.other_feature);
-  return same_target(turned, declared);
+  const Details &a = later.details, &b = declared.details;
+  return later.kind == declared.kind && later.part == b.other_part &&
+         a.other_part == declared.part && a.feature == b.other_feature &&
+         a.other_feature == b.feature;
 }
 
 // What is said of a part that was removed, or of a face that its mesh no longer has, holds again
@@ -43,34 +47,55 @@ bool is_of_present(const World& world, const Decision& decision) {
          !is_gone(details.other_part, details.other_feature);
 }
 
-}  // namespace
-
-std::vector<Decision> standing_decisions(const World& world) {
-  std::vector<Decision> standing;
-  standing.reserve(world.declared.size() + world.standing.size() + world.guides.size());
+// In order. `see` returns false where it has seen enough; then so does this.
+template <class See>
+bool each_standing(const World& world, See see) {
   for (const Decision& declared : world.declared)
     if (is_of_present(world, declared) &&
-        std::ranges::none_of(world.standing, [&](auto& d) { return replaces(d, declared); }))
-      standing.push_back(declared);
+        std::ranges::none_of(world.standing, [&](auto& d) { return replaces(d, declared); }) &&
+        !see(declared))
+      return false;
   for (const Decision& decision : world.standing)
-    if (is_of_present(world, decision)) standing.push_back(decision);
+    if (is_of_present(world, decision) && !see(decision)) return false;
   for (const Part& part : world.parts) {
     if (!part.asked_by) continue;
-    Decision& ask = standing.emplace_back();
+    Decision ask;
     ask.kind = Decision::Kind::kAskHandOver;
     ask.user = part.asked_by;
     ask.part = part.id;
     ask.details.other_user = part.holder;
+    if (!see(ask)) return false;
   }
   for (const Guide& guide : world.guides) {
-    Decision& added = standing.emplace_back();
+    Decision added;
     added.kind = Decision::Kind::kAddConstraint;
     added.user = guide.user;
     added.part = guide.constraint.held.part;
     added.details.constraint = guide.constraint;
     added.details.constraint_id = guide.id;
+    if (!see(added)) return false;
   }
+  return true;
+}
+
+}  // namespace
+
+std::vector<Decision> standing_decisions(const World& world) {
+  std::vector<Decision> standing;
+  standing.reserve(world.declared.size() + world.standing.size() + world.guides.size());
+  each_standing(world, [&](const Decision& decision) {
+    standing.push_back(decision);
+    return true;
+  });
   return standing;
+}
+
+bool are_standing(const World& world, std::span<const Decision> decisions) {
+  std::size_t seen = 0;
+  const bool all_known = each_standing(world, [&](const Decision& decision) {
+    return seen < decisions.size() && decisions[seen++] == decision;
+  });
+  return all_known && seen == decisions.size();
 }
 
 std::vector<StandingChange> standing_changes(std::span<const Decision> before,

@@ -15,6 +15,9 @@ bool same_target(const Decision& x, const Decision& y);
 /// user where another user has that id now.
 std::vector<Decision> standing_decisions(const World& world);
 
+/// Are these in force, and no others, in the order of standing_decisions()? Makes no list of them.
+bool are_standing(const World& world, std::span<const Decision> decisions);
+
 /// The changes from `before` to `after`: first what is no longer in force, then what newly is.
 std::vector<StandingChange> standing_changes(std::span<const Decision> before,
                                              std::span<const Decision> after, std::uint64_t tick);

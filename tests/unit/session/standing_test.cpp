@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <random>
 
+#include "tests/support/effort.h"
 #include "tests/unit/session/three_people.h"
 
 namespace mortise {
@@ -54,6 +56,56 @@ TEST_F(StandingTest, NothingHoldsOfAPartThatWasLetGo) {
       EXPECT_NE(std::ranges::find(before, change.decision), before.end());
     }
   }
+}
+
+// Without a list it is known whether the list has changed: whatever is decided, in any order.
+TEST_F(StandingTest, WhetherItChangedIsWhatTheListSays) {
+  for (const PartId part : {wall, peg}) {
+    Decision fit{Kind::kSetTolerance, {}, peg, {}};
+    fit.details.other_part = wall;
+    fit.details.feature = part == wall ? "shaft" : "journal";
+    fit.details.other_feature = "bore";
+    session.world.declared.push_back(fit);
+  }
+  std::mt19937 draw(7);
+  int same = 0, other = 0;
+  for (int i = 0; i < test::effort(400); ++i) {
+    before = standing_decisions(session.world);
+    EXPECT_TRUE(are_standing(session.world, before));
+    Decision next = by_ada(Kind::kSetExclusion, draw() % 2 == 0 ? peg : wall);
+    next.details.other_part = next.part == peg ? wall : peg;
+    next.details.text = draw() % 2 == 0 ? "glued" : "welded";
+    switch (draw() % 6) {
+      case 0:
+        next.kind = Kind::kDropExclusion;
+        break;
+      case 1:
+        next.kind = Kind::kSetTolerance;
+        next.details.feature = next.part == peg ? "shaft" : "bore";
+        next.details.other_feature = next.part == peg ? "bore" : "shaft";
+        session.world.standing.push_back(next);
+        break;
+      case 2:
+        next = by_ada(Kind::kRelease, peg);
+        break;
+      case 3:
+        next = by_ada(Kind::kGrab, peg);
+        break;
+      case 4:
+        session.world.find(wall)->present = draw() % 2 == 0;
+        break;
+      default:
+        break;
+    }
+    if (next.kind != Kind::kSetTolerance) apply_decision(session.world, next);
+    const bool stays = standing_decisions(session.world) == before;
+    EXPECT_EQ(are_standing(session.world, before), stays) << i;
+    ++(stays ? same : other);
+    if (!before.empty()) before.pop_back();
+    EXPECT_EQ(are_standing(session.world, before), standing_decisions(session.world) == before);
+  }
+  EXPECT_GT(same, 20);
+  EXPECT_GT(other, 20);
 }
 
 TEST_F(StandingTest, WhatStaysIsNotToldAgain) {
