@@ -55,7 +55,7 @@ void TickPublisher::publish(const Intake& intake, const StepReport& report, std:
   publish_answers(intake, report);
   publish_poses(intake, report);
   publish_snapshot_when_due(intake, now_ns);
-  if (recognizer_ || features_are_due_) publish_features_when_due(now_ns);
+  if (recognizer_ || features_are_due_ || tables_.is_busy()) publish_features_when_due(now_ns);
 }
 
 void TickPublisher::publish_answers(const Intake& intake, const StepReport& report) {
@@ -72,6 +72,8 @@ void TickPublisher::publish_answers(const Intake& intake, const StepReport& repo
 
 void TickPublisher::publish_decisions(const Intake& intake, std::uint64_t tick) {
   channel_.publish_decisions(intake.decisions);
+  // Few of them change what stands, and what stands may be a thousand fits.
+  if (are_standing(world_, standing_)) return;
   std::vector<Decision> standing = standing_decisions(world_);
   const auto changes = standing_changes(standing_, standing, tick);
   if (!changes.empty()) channel_.publish_standing(changes);
@@ -128,12 +130,16 @@ void TickPublisher::publish_features_when_due(std::int64_t now_ns) {
       world_.recognized[mesh] = std::move(features);
       features_are_due_ = true;
     }
-  const bool ends = recognizer_ && done;
-  if (!ends && now_ns - features_ns_ < in_ns(options_.features_gap_s)) return;
-  if (features_are_due_) channel_.publish_features(feature_table(world_));
-  features_are_due_ = false;
+  if (recognizer_ && done) {
+    recognizer_.reset();
+    features_end_ = features_are_due_;
+  }
+  if (const auto table = tables_.take()) channel_.publish_features(*table);
+  const bool gap = features_end_ || now_ns - features_ns_ >= in_ns(options_.features_gap_s);
+  if (!features_are_due_ || !gap || tables_.is_busy()) return;
+  tables_.make(feature_sources(world_));
+  features_are_due_ = features_end_ = false;
   features_ns_ = now_ns;
-  if (ends) recognizer_.reset();
 }
 
 }  // namespace mortise

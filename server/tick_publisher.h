@@ -9,6 +9,7 @@
 #include "server/clock.h"
 #include "server/intake.h"
 #include "server/recognizer.h"
+#include "server/table_maker.h"
 
 namespace mortise {
 
@@ -51,10 +52,12 @@ class TickPublisher {
   std::vector<Decision> standing_;          ///< decisions in force, as told last
   std::vector<std::uint32_t> moving_;       ///< parts that can move, by index
   std::unique_ptr<Recognizer> recognizer_;  ///< null: no mesh is searched any more
+  TableMaker tables_;
   std::uint64_t event_seq_ = 0;
   std::int64_t snapshot_ns_ = 0, features_ns_ = 0;
   std::uint64_t edits_ = 0;  ///< World::edits when the lists were made
   bool features_are_due_ = false;
+  bool features_end_ = false;  ///< all meshes are searched, and the last table is not yet begun
   bool changed_since_snapshot_ = false, snapshot_wanted_ = false;
   bool had_readers_ = false;
 };
