@@ -91,8 +91,8 @@ void Inbox::admit(ServerInput input, World& world, std::int64_t now_ns, Intake& 
   for (const UserId user : input.heartbeats)
     if (is_present(user)) leases_.renew_all(world, user, now_ns);
   for (const ReceivedIncrement& r : input.increments) admit_increment(r, now_ns, intake);
-  for (const auto& [client, piece] : input.pieces)
-    if (speaks_for(client, piece.user)) uploads_.receive(piece, world);
+  for (auto& [client, piece] : input.pieces)
+    if (speaks_for(client, piece.user)) uploads_.receive(std::move(piece), world);
   for (const ReceivedCommand& c : input.commands) admit_command(c, world, now_ns, intake);
   increments_.take(world, now_ns, intake);
 

@@ -1,8 +1,5 @@
 #include "server/part_maker.h"
 
-#include <pthread.h>
-#include <sys/resource.h>
-#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <cmath>
@@ -23,14 +20,12 @@
 #include "common/io/scenario/brought_part.h"
 #include "common/messages/mesh_bytes.h"
 #include "common/session/guide/guidance.h"
+#include "server/scheduling.h"
 
 namespace mortise {
 namespace {
 
 namespace fs = std::filesystem;
-
-// Behind every other thread, and yet not at a standstill on a busy machine.
-constexpr int kNice = 10;
 
 /// A folder for one file, gone with this.
 class OwnFolder {
@@ -82,16 +77,26 @@ std::string told(std::string text, const std::string& path, const std::string& n
   return text;
 }
 
-Result<ImportedMesh> read_file(const PartMaker::Wish& wish) {
+std::vector<std::byte> joined(std::vector<std::vector<std::byte>> pieces) {
+  std::size_t length = 0;
+  for (const std::vector<std::byte>& piece : pieces) length += piece.size();
+  std::vector<std::byte> file;
+  file.reserve(length);
+  for (std::vector<std::byte>& piece : pieces) {
+    file.insert(file.end(), piece.begin(), piece.end());
+    piece = {};
+  }
+  return file;
+}
+
+Result<ImportedMesh> read_file(const PartMaker::Wish& wish, const std::vector<std::byte>& file) {
   const std::string ending = fs::path(wish.name).extension().string();
   if (ending == ".mmsh")
-    return is_step_document(wish.file) ? read_brought(wish.file, wish.name)
-                                       : read_wire_mesh(wish.file, wish.name);
+    return is_step_document(file) ? read_brought(file, wish.name) : read_wire_mesh(file, wish.name);
   const OwnFolder folder;
   const fs::path path = folder.path() / ("part" + ending);
   std::ofstream out(path, std::ios::binary);
-  out.write(reinterpret_cast<const char*>(wish.file.data()),
-            static_cast<std::streamsize>(wish.file.size()));
+  out.write(reinterpret_cast<const char*>(file.data()), static_cast<std::streamsize>(file.size()));
   out.close();
   if (folder.path().empty() || !out)
     return fail(Code::kRuntime, wish.name + ": this server has no room to read it");
@@ -111,16 +116,24 @@ struct PartMaker::Work {
   std::condition_variable wake;
   std::deque<Wish> wishes;
   std::vector<Made> made;
+  std::vector<std::shared_ptr<const void>> discarded;
   bool stop = false;
   std::mutex publishing;  ///< held while `publish` is called: it is none any more after the end
   Publish publish;
 
   void run() {
-    (void)::setpriority(PRIO_PROCESS, static_cast<id_t>(::syscall(SYS_gettid)), kNice);
+    run_behind_others();
     std::unique_lock lock(mutex);
     while (true) {
-      wake.wait(lock, [this] { return stop || !wishes.empty(); });
+      wake.wait(lock, [this] { return stop || !wishes.empty() || !discarded.empty(); });
       if (stop) return;
+      if (!discarded.empty()) {
+        auto gone = std::exchange(discarded, {});
+        lock.unlock();
+        gone.clear();
+        lock.lock();
+        continue;
+      }
       Wish wish = std::move(wishes.front());
       wishes.pop_front();
       lock.unlock();
@@ -137,12 +150,12 @@ struct PartMaker::Work {
     ready.as = wish.as;
     const bool is_file = !wish.solid;
     if (is_file) {
-      if (content_hash(wish.file) != wish.hash) {
+      const std::vector<std::byte> file = joined(std::exchange(wish.pieces, {}));
+      if (content_hash(file) != wish.hash) {
         ready.text = wish.name + ": its bytes are not those that were announced";
         return ready;
       }
-      Result<ImportedMesh> mesh = read_file(wish);
-      wish.file = {};
+      Result<ImportedMesh> mesh = read_file(wish, file);
       if (!mesh) {
         ready.text = mesh.error().text;
         return ready;
@@ -207,6 +220,15 @@ void PartMaker::make(Wish wish) {
   {
     const std::lock_guard lock(work_->mutex);
     work_->wishes.push_back(std::move(wish));
+  }
+  work_->wake.notify_all();
+}
+
+void PartMaker::discard(std::shared_ptr<const void> what) {
+  if (!what) return;
+  {
+    const std::lock_guard lock(work_->mutex);
+    work_->discarded.push_back(std::move(what));
   }
   work_->wake.notify_all();
 }

@@ -19,10 +19,10 @@ class PartMaker {
  public:
   struct Wish {
     std::string key;  ///< told back
-    // A file with the hash that was announced,
+    // A file with the hash that was announced, in pieces as it came,
     std::string name, hash;
     double unit_mm = 1.0;
-    std::vector<std::byte> file;
+    std::vector<std::vector<std::byte>> pieces;
     // or a mesh.
     SolidPtr solid;
     double quantum_mm = 0.0;
@@ -48,6 +48,9 @@ class PartMaker {
   PartMaker& operator=(const PartMaker&) = delete;
 
   void make(Wish wish);
+  /// Lets go of it in the thread: to free what was made of a large part takes a tick. Null:
+  /// nothing.
+  void discard(std::shared_ptr<const void> what);
   /// What was made since the last call. Never blocks for longer than a move.
   std::vector<Made> take();
 

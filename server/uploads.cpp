@@ -22,6 +22,14 @@ std::string key_text(UserId user, std::uint64_t upload) {
   return std::to_string(user.value) + "/" + std::to_string(upload);
 }
 
+// As it came: a copy into one file would touch all of its memory in ticks. Small ones are put
+// together, so that they take no more than they hold.
+void keep(std::vector<std::byte> bytes, std::vector<std::vector<std::byte>>& pieces) {
+  if (pieces.empty() || pieces.back().size() + bytes.size() > kUploadPiece_bytes)
+    return pieces.push_back(std::move(bytes));
+  pieces.back().insert(pieces.back().end(), bytes.begin(), bytes.end());
+}
+
 }  // namespace
 
 void Uploads::note_follower(bool is_there, bool has_come) {
@@ -33,7 +41,8 @@ void Uploads::note_follower(bool is_there, bool has_come) {
 
 // 1. pieces
 
-void Uploads::receive(const UploadPiece& piece, World& world) {
+void Uploads::receive(UploadPiece piece, World& world) {
+  std::vector<std::byte> bytes = std::exchange(piece.bytes, {});
   const Key key{piece.user, piece.upload};
   if (piece.offset == 0 && begin(piece, world) == nullptr) return;
   const auto found = uploads_.find(key);
@@ -43,12 +52,12 @@ void Uploads::receive(const UploadPiece& piece, World& world) {
   if (piece.offset != upload.received || piece.length != upload.head.length)
     return end(upload, Refusal::kUnreadableMesh,
                upload.head.name + ": its pieces do not follow each other");
-  upload.tick_bytes += piece.bytes.size();
+  upload.tick_bytes += bytes.size();
   if (upload.tick_bytes > kUploadAhead_bytes)
     return end(upload, Refusal::kRateTooHigh,
                upload.head.name + ": was sent faster than the server confirms it");
-  upload.file.insert(upload.file.end(), piece.bytes.begin(), piece.bytes.end());
-  upload.received += piece.bytes.size();
+  upload.received += bytes.size();
+  keep(std::move(bytes), upload.pieces);
   upload.is_new = true;
   if (upload.received == upload.head.length) finish(key, upload, world);
 }
@@ -67,7 +76,6 @@ Uploads::Upload* Uploads::begin(const UploadPiece& piece, const World& world) {
   std::string text = why_not(piece, world, refusal);
   Upload& upload = uploads_[key];
   upload.head = piece;
-  upload.head.bytes = {};
   upload.state.user = piece.user;
   upload.state.upload = piece.upload;
   if (refusal != Refusal::kNone) {
@@ -76,7 +84,6 @@ Uploads::Upload* Uploads::begin(const UploadPiece& piece, const World& world) {
     return nullptr;
   }
   bytes_of_[piece.user] += piece.length;
-  upload.file.reserve(piece.length);  // growing, it would be copied in a tick
   return &upload;
 }
 
@@ -108,7 +115,7 @@ std::string Uploads::why_not(const UploadPiece& piece, const World& world, Refus
 }
 
 void Uploads::end(Upload& upload, Refusal refusal, std::string text) {
-  upload.file = {};
+  drop_file(upload);
   upload.state.refusal = refusal;
   upload.state.text = std::move(text);
   upload.is_new = true;
@@ -120,12 +127,28 @@ void Uploads::finish(const Key& key, Upload& upload, World& world) {
   wish.name = upload.head.name;
   wish.hash = upload.head.hash;
   wish.unit_mm = upload.head.unit_mm;
-  wish.file = std::move(upload.file);
+  wish.pieces = std::move(upload.pieces);
   maker(world).make(std::move(wish));
 }
 
 void Uploads::drop(UserId user) {
+  for (auto& [key, upload] : uploads_)
+    if (key.first == user) drop_file(upload);
   std::erase_if(uploads_, [&](const auto& entry) { return entry.first.first == user; });
+}
+
+void Uploads::drop_file(Upload& upload) {
+  using Pieces = decltype(upload.pieces);
+  if (maker_) maker_->discard(std::make_shared<Pieces>(std::move(upload.pieces)));
+  upload.pieces = {};
+}
+
+void Uploads::note_used(const std::string& mesh_hash) {
+  used_.insert(mesh_hash);
+  const auto unused = unused_.find(mesh_hash);
+  if (unused == unused_.end()) return;
+  if (maker_) maker_->discard(std::move(unused->second.bytes));
+  unused_.erase(unused);
 }
 
 PartMaker& Uploads::maker(const World& world) {
@@ -140,7 +163,11 @@ PartMaker& Uploads::maker(const World& world) {
 
 void Uploads::settle(World& world, Intake& intake) {
   if (maker_)
-    for (PartMaker::Made& made : maker_->take()) take_made(std::move(made), world);
+    for (PartMaker::Made& made : maker_->take()) {
+      take_made(made, world);
+      maker_->discard(std::move(made.shape));  // where the session has it already
+      maker_->discard(std::move(made.mesh_bytes));
+    }
   for (auto& [key, upload] : uploads_) {
     upload.tick_bytes = 0;
     if (!upload.is_new) continue;
@@ -150,7 +177,7 @@ void Uploads::settle(World& world, Intake& intake) {
   }
 }
 
-void Uploads::take_made(PartMaker::Made made, World& world) {
+void Uploads::take_made(PartMaker::Made& made, World& world) {
   making_.erase(made.key);
   if (made.as) {
     if (made.shape)

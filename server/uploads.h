@@ -34,7 +34,7 @@ class Uploads {
   void note_follower(bool is_there, bool has_come);
 
   /// A piece of a user who is present.
-  void receive(const UploadPiece& piece, World& world);
+  void receive(UploadPiece piece, World& world);
   void drop(UserId user);  ///< a user who has left
   /// Puts what was made at the world's disposal, and tells how far everybody is.
   void settle(World& world, Intake& intake);
@@ -52,10 +52,7 @@ class Uploads {
   /// The same of a mesh of the session that is to be that part.
   Mesh find(const std::string& mesh_hash, const PartShapes::AsPart& as, World& world);
   /// A decision has named the mesh: it is in the log from now on.
-  void note_used(const std::string& mesh_hash) {
-    used_.insert(mesh_hash);
-    unused_.erase(mesh_hash);
-  }
+  void note_used(const std::string& mesh_hash);
 
   /// What the one that stands by is told in this tick; none: nothing.
   std::optional<MeshPiece> next_piece();
@@ -63,8 +60,8 @@ class Uploads {
  private:
   using Key = std::pair<UserId, std::uint64_t>;  ///< user and number of an upload
   struct Upload {
-    UploadPiece head;  ///< name, unit, hash, length
-    std::vector<std::byte> file;
+    UploadPiece head;                            ///< name, unit, hash, length
+    std::vector<std::vector<std::byte>> pieces;  ///< of the file, in order
     std::uint64_t received = 0;
     std::uint64_t tick_bytes = 0;  ///< received in this tick
     bool is_new = true;            ///< its state, since it was told
@@ -83,8 +80,9 @@ class Uploads {
   std::string why_not(const UploadPiece& piece, const World& world, Refusal& refusal) const;
   void end(Upload& upload, Refusal refusal, std::string text);
   void finish(const Key& key, Upload& upload, World& world);
-  void take_made(PartMaker::Made made, World& world);
+  void take_made(PartMaker::Made& made, World& world);
   PartMaker& maker(const World& world);
+  void drop_file(Upload& upload);
   /// Does the one that stands by have it, or need it?
   bool is_told(const std::string& mesh_hash);
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <chrono>
 #include <thread>
 
@@ -279,6 +280,45 @@ TEST_F(UploadTest, EachLimitIsOneLine) {
   for (const Person* person : {&ada, &bot})
     for (const UploadState& state : person->uploads)
       EXPECT_EQ(state.text.find('\n'), std::string::npos);
+}
+
+// However it is cut, it is one file.
+TEST_F(UploadTest, AFileMayComeInPiecesOfAnySize) {
+  begin();
+  Person& ada = join("ada");
+  const std::vector<std::byte> file = test::cube_file(4.0);
+  std::size_t at = 0;
+  for (std::size_t size = 1; at < file.size(); size = 2 * size + 1) {
+    const std::size_t end = std::min(file.size(), at + size);
+    send(ada, {ada.client->user_id(ada.user),
+               1,
+               "post.stl",
+               1.0,
+               content_hash(file),
+               file.size(),
+               at,
+               {file.begin() + static_cast<std::ptrdiff_t>(at),
+                file.begin() + static_cast<std::ptrdiff_t>(end)}});
+    at = end;
+  }
+  ASSERT_TRUE(turn_until([&] { return !ada.uploads.empty() && ada.uploads.back().ready; }));
+  EXPECT_EQ(ada.uploads.back().received, file.size());
+  EXPECT_TRUE(world_.shapes->find(ada.uploads.back().mesh_hash).solid);
+}
+
+// What the session has no use for any more is let go of beside the ticks.
+TEST(PartMaker, LetsGoOfWhatItIsGivenInItsThread) {
+  PartMaker maker(world_with_shapes().shapes->make(), 1, nullptr);
+  std::atomic<bool> is_gone = false;
+  std::thread::id by;
+  maker.discard(nullptr);
+  maker.discard(std::shared_ptr<const void>(&by, [&](const void*) {
+    by = std::this_thread::get_id();
+    is_gone = true;
+  }));
+  for (int i = 0; i < 60'000 && !is_gone; ++i) std::this_thread::sleep_for(1ms);
+  ASSERT_TRUE(is_gone);
+  EXPECT_NE(by, std::this_thread::get_id());
 }
 
 TEST_F(UploadTest, WhoSendsFasterThanIsConfirmedIsCutOff) {
