@@ -1,7 +1,7 @@
 #include "common/depth/depth.h"
 
 #include "common/depth/body.h"
-#include "common/depth/search/tip_reach.h"
+#include "common/depth/body_tips.h"
 
 namespace mortise {
 

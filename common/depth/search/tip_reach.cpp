@@ -3,18 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
+#include "common/depth/body_tips.h"
 #include "common/depth/cells/least_reach.h"
 #include "common/depth/triangles_in.h"
 
 namespace mortise {
-
-const std::vector<Tip>& tips_of(const Body& body) {
-  std::unique_ptr<const std::vector<Tip>>& tips = body.index().tips;
-  if (!tips) tips = std::make_unique<const std::vector<Tip>>(find_tips(*body.solid, *body.band));
-  return *tips;
-}
-
 namespace {
 
 // Pieces of all tips of a pair that are looked at.

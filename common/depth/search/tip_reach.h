@@ -1,10 +1,8 @@
 #pragma once
 #include <cstdint>
 #include <optional>
-#include <vector>
 
 #include "common/depth/pair_frame.h"
-#include "common/geometry/tips.h"
 #include "common/math/interval.h"
 
 namespace mortise {
@@ -18,9 +16,6 @@ struct TipReach {
   Interval possible_mm;  ///< lo > 0: reached at the point; else it could not be excluded
   double gap_mm = 0.0;   ///< from the mesh of the other part, there
 };
-
-/// The tips of the largest part; found once, O(triangles).
-const std::vector<Tip>& tips_of(const Body& body);
 
 /// Where the faces of both parts, moved by their bands, keep apart: does a tip of either reach
 /// farther? nullopt is proven (README, section 10), but for what PlaneFaces::kMostTravel cuts off.
