@@ -138,17 +138,14 @@ void Uploads::drop(UserId user) {
 }
 
 void Uploads::drop_file(Upload& upload) {
-  using Pieces = decltype(upload.pieces);
-  if (maker_) maker_->discard(std::make_shared<Pieces>(std::move(upload.pieces)));
-  upload.pieces = {};
+  auto file = std::make_shared<decltype(upload.pieces)>(std::exchange(upload.pieces, {}));
+  if (maker_) maker_->discard(std::move(file));
 }
 
 void Uploads::note_used(const std::string& mesh_hash) {
   used_.insert(mesh_hash);
-  const auto unused = unused_.find(mesh_hash);
-  if (unused == unused_.end()) return;
-  if (maker_) maker_->discard(std::move(unused->second.bytes));
-  unused_.erase(unused);
+  if (auto unused = unused_.extract(mesh_hash); unused && maker_)
+    maker_->discard(std::move(unused.mapped().bytes));
 }
 
 PartMaker& Uploads::maker(const World& world) {
@@ -165,8 +162,7 @@ void Uploads::settle(World& world, Intake& intake) {
   if (maker_)
     for (PartMaker::Made& made : maker_->take()) {
       take_made(made, world);
-      maker_->discard(std::move(made.shape));  // where the session has it already
-      maker_->discard(std::move(made.mesh_bytes));
+      maker_->discard(std::make_shared<PartMaker::Made>(std::move(made)));
     }
   for (auto& [key, upload] : uploads_) {
     upload.tick_bytes = 0;
