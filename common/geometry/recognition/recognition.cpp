@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <limits>
 #include <map>
 
@@ -31,6 +32,10 @@ constexpr double kHopeless = 30.0;
 constexpr double kLeastBulge = 0.1;
 // Fits to seeds stop where a step wins less: exact points win decades a step.
 constexpr double kWorthGoingOn = 0.05;
+
+// Corners of a few seeds that are farther off (root mean square) than this many times what may be
+// are off in larger sets too. One would do if every fit found the nearest surface of all.
+constexpr double kSurelyOff = 3.0;
 
 constexpr std::int32_t kNobody = -1;
 
@@ -103,9 +108,9 @@ class Recognizer {
     std::optional<Region> best;
     for (std::size_t k = 0; k < kCurvedKinds.size(); ++k) {
       std::optional<Region> found;
-      if (grows_in_ribbons(kCurvedKinds[k])) found = first_of(k, sets.ribbons, share);
+      if (grows_in_ribbons(kCurvedKinds[k])) found = first_of(k, sets, sets.ribbons, share);
       if (kCurvedKinds[k] == SurfaceKind::kTorus && best) found = torus_of(*best, sets, share);
-      if (!found) found = first_of(k, sets.patches, share);
+      if (!found) found = first_of(k, sets, sets.patches, share);
       if (!found) continue;
       const auto worth = [](const Region& r) { return static_cast<double>(r.triangles.size()); };
       if (!best || worth(*found) > kWorthMore * worth(*best)) best = std::move(found);
@@ -113,17 +118,37 @@ class Recognizer {
     return best;
   }
 
-  std::optional<Region> first_of(std::size_t kind, std::vector<SeedSet>& sets, double share) {
+  std::optional<Region> first_of(std::size_t kind, SeedSets& all, std::vector<SeedSet>& sets,
+                                 double share) {
     for (SeedSet& seeds : sets) {
       double& off_share = seeds.off_share[kind];
       if (off_share > share) continue;
-      fill(seeds);
-      off_share = std::numeric_limits<double>::infinity();
-      const auto guess = guess_of(kCurvedKinds[kind], seeds.points, seeds.normals);
-      if (!guess) continue;
-      if (auto region = from_guess(*guess, seeds, share, off_share)) return region;
+      if (const double least = least_share(kind, all, seeds, share); least > share) {
+        off_share = least;
+        continue;
+      }
+      fit(kind, seeds);
+      if (off_share > share) continue;
+      if (auto region = grown(*seeds.fits[kind].surface, seeds, share)) return region;
     }
     return std::nullopt;
+  }
+
+  // Corners that are far off every surface of a kind are so in any larger set too: the smallest
+  // sets, which cost least, are asked first.
+  double least_share(std::size_t kind, SeedSets& all, const SeedSet& seeds, double share) {
+    const bool patch = &seeds >= all.patches.data() &&
+                       &seeds < all.patches.data() + all.patches.size();
+    for (std::uint32_t parts = seeds.holds; parts != 0;) {
+      const auto bit = static_cast<unsigned>(std::bit_width(parts)) - 1U;
+      parts ^= 1U << bit;
+      SeedSet& part = all.at_bit(bit);
+      // Ribbons were asked before, or are not asked for this kind at all.
+      if (patch == (bit >= SeedSets::kPatchBit) && !(part.off_share[kind] > share))
+        fit(kind, part);
+      if (part.fits[kind].least_share > share) return part.fits[kind].least_share;
+    }
+    return 0.0;
   }
 
   void fill(SeedSet& seeds) {
@@ -132,21 +157,35 @@ class Recognizer {
     seeds.normals = grower_.normals_of(seeds.triangles);
   }
 
-  std::optional<Region> from_guess(const Surface& guess, const SeedSet& seeds, double share,
-                                   double& off_share) {
-    const double extent_mm = extent_of(seeds.points);
-    if (residual_of(guess, seeds.points) > kFarOff * extent_mm) return std::nullopt;
-    const double size = size_mm(guess, seeds.points);
-    const double hopeless_mm = kHopeless * (kShares.back() * size + grower_.rounding_mm());
-    const auto fit = fitted_surface(guess, seeds.points, kWorthGoingOn, hopeless_mm);
-    if (!fit) return std::nullopt;
-    const double fit_size = size_mm(*fit, seeds.points);
-    const double residual_mm = residual_of(*fit, seeds.points);
-    off_share = (residual_mm - grower_.rounding_mm()) / fit_size;
-    if (residual_mm > share * fit_size + grower_.rounding_mm()) return std::nullopt;
-    const double bulge_mm = extent_mm * extent_mm / (8.0 * fit_size);
-    if (bulge_mm < kLeastBulge * share * fit_size) return std::nullopt;
-    return grower_.grow(*fit, seeds.triangles, share);
+  void fit(std::size_t kind, SeedSet& seeds) {
+    SeedFit& fit = seeds.fits[kind];
+    if (fit.asked) return;
+    fit.asked = true;
+    fill(seeds);
+    seeds.off_share[kind] = std::numeric_limits<double>::infinity();
+    if (const auto guess = guess_of(kCurvedKinds[kind], seeds.points, seeds.normals))
+      seeds.off_share[kind] = fit_from(*guess, seeds, fit);
+  }
+
+  // Gives how far off the fit leaves corners, as a share of its size.
+  double fit_from(const Surface& guess, const SeedSet& seeds, SeedFit& fit) const {
+    constexpr double kNever = std::numeric_limits<double>::infinity();
+    if (residual_of(guess, seeds.points) > kFarOff * extent_of(seeds.points)) return kNever;
+    const double rounding_mm = grower_.rounding_mm(), size = size_mm(guess, seeds.points);
+    const double hopeless_mm = kHopeless * (kShares.back() * size + rounding_mm);
+    fit.surface = fitted_surface(guess, seeds.points, kWorthGoingOn, hopeless_mm);
+    if (!fit.surface) return kNever;
+    const double fit_size = size_mm(*fit.surface, seeds.points);
+    const Residuals off = residuals_of(*fit.surface, seeds.points);
+    fit.least_share = (off.mean_mm / kSurelyOff - rounding_mm) / fit_size;
+    return (off.most_mm - rounding_mm) / fit_size;
+  }
+
+  std::optional<Region> grown(const Surface& fit, const SeedSet& seeds, double share) {
+    const double size = size_mm(fit, seeds.points), extent_mm = extent_of(seeds.points);
+    const double bulge_mm = extent_mm * extent_mm / (8.0 * size);
+    if (bulge_mm < kLeastBulge * share * size) return std::nullopt;
+    return grower_.grow(fit, seeds.triangles, share);
   }
 
   // A strip may be one of a torus: its axis is that of the torus.
@@ -156,8 +195,9 @@ class Recognizer {
       fill(seeds);
       const auto guess = guess_torus_about(strip.surface, seeds.points);
       if (!guess) continue;
-      double off_share = 0.0;
-      if (auto region = from_guess(*guess, seeds, share, off_share)) return region;
+      SeedFit fit;
+      if (fit_from(*guess, seeds, fit) > share) continue;
+      if (auto region = grown(*fit.surface, seeds, share)) return region;
     }
     return std::nullopt;
   }

@@ -103,6 +103,7 @@ void SeedFinder::add_ribbons(std::uint32_t seed, SeedSets& sets) const {
       });
     }
     std::size_t last = 0;
+    const std::size_t longest = sets.ribbons.size();
     for (const int reach : kReach) {
       // The end of an arc has neighbours on one side only: then twice as many there.
       const auto most = [&](const auto& other) {
@@ -117,6 +118,8 @@ void SeedFinder::add_ribbons(std::uint32_t seed, SeedSets& sets) const {
       add_triangles(seed, ribbon);
       for (std::size_t i = 0; i < m; ++i) add_triangles(ahead[i], ribbon);
       for (std::size_t i = 0; i < n; ++i) add_triangles(behind[i], ribbon);
+      for (std::size_t i = longest; i < sets.ribbons.size(); ++i)
+        sets.ribbons[i].holds |= 1U << sets.ribbons.size();
       sets.ribbons.emplace_back().triangles = std::move(ribbon);
     }
   }
@@ -152,10 +155,29 @@ void SeedFinder::add_patches(std::uint32_t seed, SeedSets& sets) {
     sets.patches.emplace_back().triangles = std::move(cross);
 }
 
+// Which ribbons and smaller patches lie within each patch.
+void SeedFinder::tell_parts_of_patches(SeedSets& sets) {
+  for (std::size_t i = 0; i < sets.patches.size(); ++i) {
+    SeedSet& patch = sets.patches[i];
+    ++stamp_;
+    for (const std::uint32_t t : patch.triangles) mark_[t] = stamp_;
+    const auto look = [&](const SeedSet& part, std::size_t bit) {
+      if (part.triangles.size() < patch.triangles.size() &&
+          std::all_of(part.triangles.begin(), part.triangles.end(),
+                      [&](std::uint32_t t) { return mark_[t] == stamp_; }))
+        patch.holds |= 1U << bit;
+    };
+    for (std::size_t k = 0; k < sets.ribbons.size(); ++k) look(sets.ribbons[k], k);
+    for (std::size_t k = i + 1; k < sets.patches.size(); ++k)
+      look(sets.patches[k], SeedSets::kPatchBit + k);
+  }
+}
+
 SeedSets SeedFinder::about(std::uint32_t facet) {
   SeedSets sets;
   add_ribbons(facet, sets);
   add_patches(facet, sets);
+  tell_parts_of_patches(sets);
   return sets;
 }
 

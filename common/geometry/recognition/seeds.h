@@ -1,5 +1,6 @@
 #pragma once
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "common/geometry/recognition/region.h"
@@ -12,13 +13,23 @@ inline constexpr std::array kCurvedKinds{SurfaceKind::kCylinder, SurfaceKind::kC
                                          SurfaceKind::kSphere, SurfaceKind::kTorus};
 using ByKind = std::array<double, kCurvedKinds.size()>;  ///< one value for each of them
 
+/// What one kind of surface is to a set of seeds.
+struct SeedFit {
+  bool asked = false;
+  std::optional<Surface> surface;
+  /// A set that contains these seeds is not asked below this share: 0, where nothing is known.
+  double least_share = 0.0;
+};
+
 /// Triangles about a facet that may belong to one surface; points and normals
 /// are of the triangles, filled when first asked for.
 struct SeedSet {
   std::vector<std::uint32_t> triangles;
-  /// How far the fit of each kind leaves corners off, as a share of its size;
+  /// How far the fit of each kind leaves corners off, as a share of its size, or less;
   /// 0: not known.
   ByKind off_share{};
+  std::array<SeedFit, kCurvedKinds.size()> fits{};  ///< of this try
+  std::uint32_t holds = 0;                          ///< bits of the smaller sets that are in it
   std::vector<Vec3> points;
   std::vector<OrientedPoint> normals;
 };
@@ -28,6 +39,11 @@ struct SeedSet {
 /// first. Longer sets come first, because they average noise.
 struct SeedSets {
   std::vector<SeedSet> ribbons, patches;
+
+  static constexpr unsigned kPatchBit = 24;  ///< of SeedSet::holds: ribbons are 18 at most
+  SeedSet& at_bit(unsigned bit) {
+    return bit < kPatchBit ? ribbons[bit] : patches[bit - kPatchBit];
+  }
 };
 
 class SeedFinder {
@@ -56,6 +72,7 @@ class SeedFinder {
   void add_triangles(std::uint32_t facet, std::vector<std::uint32_t>& out) const;
   void add_ribbons(std::uint32_t seed, SeedSets& sets) const;
   void add_patches(std::uint32_t seed, SeedSets& sets);
+  void tell_parts_of_patches(SeedSets& sets);
 
   const TriangleMesh& mesh_;
   const Topology& topology_;

@@ -354,6 +354,19 @@ std::optional<Surface> fitted_surface(const Surface& start, std::span<const Vec3
   }
 }
 
+Residuals residuals_of(const Surface& surface, std::span<const Vec3> points) {
+  Residuals all;
+  double sum2 = 0.0;
+  const SurfaceAt at(surface);
+  for (const Vec3& x : points) {
+    const double off = std::fabs(at.outside_mm(x));
+    all.most_mm = std::max(all.most_mm, off);
+    sum2 += off * off;
+  }
+  if (!points.empty()) all.mean_mm = std::sqrt(sum2 / static_cast<double>(points.size()));
+  return all;
+}
+
 double residual_of(const Surface& surface, std::span<const Vec3> points) {
   double most = 0.0;
   const SurfaceAt at(surface);

@@ -15,6 +15,12 @@ namespace mortise {
 std::optional<Surface> fitted_surface(const Surface& start, std::span<const Vec3> points,
                                       double worth_going_on = 1e-6, double hopeless_mm = 1e300);
 
+/// Distances of points from a surface: the largest, and the root mean square.
+struct Residuals {
+  double most_mm = 0.0, mean_mm = 0.0;
+};
+Residuals residuals_of(const Surface& surface, std::span<const Vec3> points);
+
 /// Largest distance of a point from the surface, mm.
 double residual_of(const Surface& surface, std::span<const Vec3> points);
 
