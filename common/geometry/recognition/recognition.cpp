@@ -71,10 +71,24 @@ class Recognizer {
     recall(f, sets);
     auto region = best_about(sets, share);
     given_up_[f] = std::max(given_up_[f], share);
-    if (region) return claim(std::move(*region));
+    if (region) {
+      // A region of others that runs through the facet without it would be found again from it.
+      const bool refused = runs_past(*region, f);
+      if (!claim(std::move(*region)) && refused)
+        given_up_[f] = std::numeric_limits<double>::infinity();
+      return;
+    }
     // All seeds were tried, and fit nothing better than that: no use in trying
     // again below it.
     given_up_[f] = std::max(given_up_[f], std::nextafter(remember(f, sets), 0.0));
+  }
+
+  // Do the corners of a facet lie on a region that has left it out for its shape?
+  bool runs_past(const Region& region, std::uint32_t f) {
+    const auto triangles = facets_.triangles(f);
+    return !std::binary_search(region.triangles.begin(), region.triangles.end(),
+                               triangles.front()) &&
+           residual_of(region.surface, grower_.points_of(triangles)) <= region.allowed_mm;
   }
 
   void recall(std::uint32_t f, SeedSets& sets) const {
@@ -223,8 +237,9 @@ class Recognizer {
   }
 
   // Triangles belong to who came first, except that a larger region takes over
-  // smaller ones whole: the strips of a sphere may have been found as cones.
-  void claim(Region region) {
+  // smaller ones whole: the strips of a sphere may have been found as cones. False where nothing
+  // was left to claim.
+  bool claim(Region region) {
     std::map<std::int32_t, std::size_t> overlap;
     for (const std::uint32_t t : region.triangles)
       if (owner_[t] != kNobody) ++overlap[owner_[t]];
@@ -238,7 +253,7 @@ class Recognizer {
     }
     const std::size_t before = region.triangles.size();
     std::erase_if(region.triangles, [&](std::uint32_t t) { return owner_[t] != kNobody; });
-    if (region.triangles.empty()) return;
+    if (region.triangles.empty()) return false;
     if (region.triangles.size() < before && !grower_.settle(region)) {
       // What is left over beside others would be found again from each of its
       // facets.
@@ -246,11 +261,12 @@ class Recognizer {
         double& given_up = given_up_[facets_.of_triangle[t]];
         given_up = std::max(given_up, region.share);
       }
-      return;
+      return true;
     }
     for (const std::uint32_t t : region.triangles)
       owner_[t] = static_cast<std::int32_t>(regions_.size());
     regions_.push_back(std::move(region));
+    return true;
   }
 
   const Solid& solid_;

@@ -37,6 +37,9 @@ constexpr std::size_t kLeastMeridianCircles = 5;
 constexpr double kEqualSteps = 0.02;
 // While a region grows, so many of its corners are enough for a fit.
 constexpr std::size_t kCornersOnTheWay = 1000, kAllCorners = 100'000;
+// A fit on the way stops where a step wins less of the cost: exact corners win decades a step, and
+// the next fit goes on. The last one goes to the end.
+constexpr double kWorthOnTheWay = 1e-6, kToTheEnd = 1e-6;
 // A guess this many times as far off as corners may be from all that an earlier one reached would
 // reach the same: a fit on the way brings it there.
 constexpr double kSameGrowth = 30.0;
@@ -105,7 +108,8 @@ RegionGrower::RegionGrower(const Solid& solid, const Facets& facets, double quan
       facets_(facets),
       rounding_mm_(2.0 * quantum_mm + kRoundingShare * solid.sphere().radius_mm),
       triangle_mark_(mesh_.triangles.size(), 0),
-      point_mark_(mesh_.points_mm.size(), 0) {
+      point_mark_(mesh_.points_mm.size(), 0),
+      point_asked_(mesh_.points_mm.size(), 0) {
   tell_edges();
 }
 
@@ -147,11 +151,31 @@ void RegionGrower::tell_edges() {
     }
 }
 
+bool RegionGrower::corners_lie_on(std::uint32_t t, const SurfaceAt& at, double allowed_mm) const {
+  for (int k = 0; k < 3; ++k)
+    if (!(std::fabs(at.outside_mm(mesh_.corner(t, k))) <= allowed_mm)) return false;
+  return true;
+}
+
+// The same within one spread: about six triangles ask each corner.
+bool RegionGrower::corners_asked_once(std::uint32_t t, const SurfaceAt& at, double allowed_mm) {
+  for (const std::uint32_t i : mesh_.triangles[t]) {
+    std::uint32_t& asked = point_asked_[i];
+    if (asked / 2 != mark_)
+      asked = 2 * mark_ + (std::fabs(at.outside_mm(mesh_.points_mm[i])) <= allowed_mm ? 1U : 0U);
+    if (asked % 2 == 0) return false;
+  }
+  return true;
+}
+
 bool RegionGrower::belongs(std::uint32_t t, const SurfaceAt& at, double allowed_mm) const {
+  return corners_lie_on(t, at, allowed_mm) && looks_along(t, at, allowed_mm);
+}
+
+// Of a triangle whose corners lie on the surface: does it stand for that?
+bool RegionGrower::looks_along(std::uint32_t t, const SurfaceAt& at, double allowed_mm) const {
   const Surface& surface = at.surface();
   const Vec3 &a = mesh_.corner(t, 0), &b = mesh_.corner(t, 1), &c = mesh_.corner(t, 2);
-  for (const Vec3* x : {&a, &b, &c})
-    if (!(std::fabs(at.outside_mm(*x)) <= allowed_mm)) return false;
   if (const std::uint32_t f = facets_.of_triangle[t]; facets_.reliable[f]) {
     const Vec3 middle = (a + b + c) / 3.0;
     if (facets_.normal[f].dot(at.outward_normal(middle)) < kLooksAlong) return false;
@@ -188,18 +212,21 @@ void RegionGrower::spread(const Surface& surface, double allowed_mm, std::size_t
       const std::uint32_t other = topology_.neighbor[t][k];
       if (triangle_mark_[other] == mark_) continue;
       triangle_mark_[other] = mark_;  // taken or refused: asked once
-      if (belongs(other, at, allowed_mm)) triangles.push_back(other);
+      if (corners_asked_once(other, at, allowed_mm) && looks_along(other, at, allowed_mm))
+        triangles.push_back(other);
     }
   }
 }
 
 // To all corners of the region where there are no more than `most`, else to every so-manyth.
-bool RegionGrower::refit(Region& region, const std::vector<Vec3>& corners, std::size_t most) const {
+bool RegionGrower::refit(Region& region, const std::vector<Vec3>& corners, std::size_t most,
+                         double worth_going_on) const {
   const std::size_t stride = 1 + corners.size() / most;
   std::vector<Vec3> some;
   if (stride > 1)
     for (std::size_t i = 0; i < corners.size(); i += stride) some.push_back(corners[i]);
-  const auto fitted = fitted_surface(region.surface, stride > 1 ? some : corners);
+  const auto fitted =
+      fitted_surface(region.surface, stride > 1 ? some : corners, worth_going_on);
   if (!fitted) return false;
   region.surface = *fitted;
   region.allowed_mm = region.share * size_mm(region.surface, corners) + rounding_mm_;
@@ -208,7 +235,8 @@ bool RegionGrower::refit(Region& region, const std::vector<Vec3>& corners, std::
 
 bool RegionGrower::fit_all(Region& region) {
   const std::vector<Vec3> corners = points_of(region.triangles);
-  if (corners.size() < corners_needed(region.surface.kind) || !refit(region, corners, kAllCorners))
+  if (corners.size() < corners_needed(region.surface.kind) ||
+      !refit(region, corners, kAllCorners, kToTheEnd))
     return false;
   region.residual_mm = residual_of(region.surface, corners);
   return true;
@@ -333,7 +361,8 @@ std::optional<Region> RegionGrower::grow(const Surface& guess, std::span<const s
     const std::size_t size = region.triangles.size();
     spread(region.surface, region.allowed_mm, limit, region.triangles);
     if (region.triangles.size() == size) break;
-    if (!refit(region, points_of(region.triangles), kCornersOnTheWay)) return std::nullopt;
+    if (!refit(region, points_of(region.triangles), kCornersOnTheWay, kWorthOnTheWay))
+      return std::nullopt;
   }
   const std::vector<std::uint32_t> reached = region.triangles;
   std::optional<Region> outcome;

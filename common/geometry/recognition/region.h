@@ -67,6 +67,9 @@ class RegionGrower {
   static constexpr std::uint8_t kSmooth = 1, kSmoothOfBall = 2;
   void tell_edges();
   bool belongs(std::uint32_t t, const SurfaceAt& surface, double allowed_mm) const;
+  bool corners_lie_on(std::uint32_t t, const SurfaceAt& surface, double allowed_mm) const;
+  bool corners_asked_once(std::uint32_t t, const SurfaceAt& surface, double allowed_mm);
+  bool looks_along(std::uint32_t t, const SurfaceAt& surface, double allowed_mm) const;
   void spread(const Surface& surface, double allowed_mm, std::size_t limit,
               std::vector<std::uint32_t>& triangles);
   // What a growth reached and how it ended.
@@ -81,7 +84,8 @@ class RegionGrower {
             const std::optional<Region>& outcome);
   bool starts(Region& region, std::span<const std::uint32_t> seeds);
   bool settles(Region& region, std::size_t least);
-  bool refit(Region& region, const std::vector<Vec3>& corners, std::size_t most) const;
+  bool refit(Region& region, const std::vector<Vec3>& corners, std::size_t most,
+             double worth_going_on) const;
   bool fit_all(Region& region);
   bool shows_enough(const Region& region);
   bool shows_enough_of_sphere(const Region& region);
@@ -93,6 +97,8 @@ class RegionGrower {
   std::vector<std::array<std::uint8_t, 3>> edges_;
   std::vector<std::uint32_t> triangle_mark_, point_mark_;
   std::uint32_t mark_ = 0;
+  // By point: twice the mark of the spread that asked, and one more where it lies on the surface.
+  std::vector<std::uint32_t> point_asked_;
   std::vector<Attempt> attempts_;
   // By kind of surface and triangle: the last attempt that reached it, counted from one.
   std::array<std::vector<std::uint32_t>, 6> attempt_of_;
