@@ -45,7 +45,7 @@ class Recognizer {
       : solid_(solid),
         quantum_mm_(std::max(options.quantum_mm, grid_quantum_mm(solid.mesh()))),
         facets_(build_facets(solid, flat_allowance_mm(solid, quantum_mm_))),
-        grower_(solid, facets_, quantum_mm_),
+        grower_(solid, facets_, quantum_mm_, options.plain),
         seeds_(solid, facets_, grower_),
         options_(options),
         owner_(solid.mesh().triangles.size(), kNobody) {}
@@ -73,7 +73,7 @@ class Recognizer {
     given_up_[f] = std::max(given_up_[f], share);
     if (region) {
       // A region of others that runs through the facet without it would be found again from it.
-      const bool refused = runs_past(*region, f);
+      const bool refused = !options_.plain && runs_past(*region, f);
       if (!claim(std::move(*region)) && refused)
         given_up_[f] = std::numeric_limits<double>::infinity();
       return;
@@ -151,15 +151,14 @@ class Recognizer {
   // Corners that are far off every surface of a kind are so in any larger set too: the smallest
   // sets, which cost least, are asked first.
   double least_share(std::size_t kind, SeedSets& all, const SeedSet& seeds, double share) {
-    const bool patch = &seeds >= all.patches.data() &&
-                       &seeds < all.patches.data() + all.patches.size();
-    for (std::uint32_t parts = seeds.holds; parts != 0;) {
+    const bool patch =
+        &seeds >= all.patches.data() && &seeds < all.patches.data() + all.patches.size();
+    for (std::uint32_t parts = options_.plain ? 0U : seeds.holds; parts != 0;) {
       const auto bit = static_cast<unsigned>(std::bit_width(parts)) - 1U;
       parts ^= 1U << bit;
       SeedSet& part = all.at_bit(bit);
       // Ribbons were asked before, or are not asked for this kind at all.
-      if (patch == (bit >= SeedSets::kPatchBit) && !(part.off_share[kind] > share))
-        fit(kind, part);
+      if (patch == (bit >= SeedSets::kPatchBit) && !(part.off_share[kind] > share)) fit(kind, part);
       if (part.fits[kind].least_share > share) return part.fits[kind].least_share;
     }
     return 0.0;

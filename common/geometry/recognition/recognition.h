@@ -34,6 +34,9 @@ struct RecognitionOptions {
   /// How far the file's coordinates are off for rounding (ImportReport::quantum_mm); 0: doubles.
   double quantum_mm = 0.0;
   bool planes = true;
+  /// The slow twin: every set of seeds is fitted, also where a smaller one within it has failed,
+  /// and every facet is tried at every share. For tests.
+  bool plain = false;
 };
 
 /// Planes, cylinders, cones, spheres and tori of a mesh whose corners lie on the true surfaces, by
@@ -44,8 +47,8 @@ struct RecognitionOptions {
 /// residual reached is in Feature::residual_mm, and bands carry it on both sides.
 ///
 /// Only corners and facet normals are known. A prism whose flats turn by 35 degrees or less and
-/// whose corners lie on a circle is found as round: twelve flats are, six and eight are not. Whether
-/// a facet may be taken for round is another question (evaluation/roundness.h). A round
+/// whose corners lie on a circle is found as round: twelve flats are, six and eight are not.
+/// Whether a facet may be taken for round is another question (evaluation/roundness.h). A round
 /// face needs three facets (two may be chamfers); a torus four strips, or three equal ones. A flat
 /// whose corners lie on the round face is recognized by being three times as wide as the median
 /// facet. A single row of facets between smooth neighbours may be a step of a drawn curve and is

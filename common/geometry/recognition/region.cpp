@@ -37,9 +37,6 @@ constexpr std::size_t kLeastMeridianCircles = 5;
 constexpr double kEqualSteps = 0.02;
 // While a region grows, so many of its corners are enough for a fit.
 constexpr std::size_t kCornersOnTheWay = 1000, kAllCorners = 100'000;
-// A fit on the way stops where a step wins less of the cost: exact corners win decades a step, and
-// the next fit goes on. The last one goes to the end.
-constexpr double kWorthOnTheWay = 1e-6, kToTheEnd = 1e-6;
 // A guess this many times as far off as corners may be from all that an earlier one reached would
 // reach the same: a fit on the way brings it there.
 constexpr double kSameGrowth = 30.0;
@@ -102,11 +99,12 @@ bool FlatBalls::hold(std::span<const std::uint32_t> seeds, const Region& start) 
                      [&](std::uint32_t t) { return of_triangle_[t] == id; });
 }
 
-RegionGrower::RegionGrower(const Solid& solid, const Facets& facets, double quantum_mm)
+RegionGrower::RegionGrower(const Solid& solid, const Facets& facets, double quantum_mm, bool plain)
     : mesh_(solid.mesh()),
       topology_(solid.topology()),
       facets_(facets),
       rounding_mm_(2.0 * quantum_mm + kRoundingShare * solid.sphere().radius_mm),
+      plain_(plain),
       triangle_mark_(mesh_.triangles.size(), 0),
       point_mark_(mesh_.points_mm.size(), 0),
       point_asked_(mesh_.points_mm.size(), 0) {
@@ -212,21 +210,20 @@ void RegionGrower::spread(const Surface& surface, double allowed_mm, std::size_t
       const std::uint32_t other = topology_.neighbor[t][k];
       if (triangle_mark_[other] == mark_) continue;
       triangle_mark_[other] = mark_;  // taken or refused: asked once
-      if (corners_asked_once(other, at, allowed_mm) && looks_along(other, at, allowed_mm))
-        triangles.push_back(other);
+      const bool on = plain_ ? corners_lie_on(other, at, allowed_mm)
+                             : corners_asked_once(other, at, allowed_mm);
+      if (on && looks_along(other, at, allowed_mm)) triangles.push_back(other);
     }
   }
 }
 
 // To all corners of the region where there are no more than `most`, else to every so-manyth.
-bool RegionGrower::refit(Region& region, const std::vector<Vec3>& corners, std::size_t most,
-                         double worth_going_on) const {
+bool RegionGrower::refit(Region& region, const std::vector<Vec3>& corners, std::size_t most) const {
   const std::size_t stride = 1 + corners.size() / most;
   std::vector<Vec3> some;
   if (stride > 1)
     for (std::size_t i = 0; i < corners.size(); i += stride) some.push_back(corners[i]);
-  const auto fitted =
-      fitted_surface(region.surface, stride > 1 ? some : corners, worth_going_on);
+  const auto fitted = fitted_surface(region.surface, stride > 1 ? some : corners);
   if (!fitted) return false;
   region.surface = *fitted;
   region.allowed_mm = region.share * size_mm(region.surface, corners) + rounding_mm_;
@@ -235,8 +232,7 @@ bool RegionGrower::refit(Region& region, const std::vector<Vec3>& corners, std::
 
 bool RegionGrower::fit_all(Region& region) {
   const std::vector<Vec3> corners = points_of(region.triangles);
-  if (corners.size() < corners_needed(region.surface.kind) ||
-      !refit(region, corners, kAllCorners, kToTheEnd))
+  if (corners.size() < corners_needed(region.surface.kind) || !refit(region, corners, kAllCorners))
     return false;
   region.residual_mm = residual_of(region.surface, corners);
   return true;
@@ -361,8 +357,7 @@ std::optional<Region> RegionGrower::grow(const Surface& guess, std::span<const s
     const std::size_t size = region.triangles.size();
     spread(region.surface, region.allowed_mm, limit, region.triangles);
     if (region.triangles.size() == size) break;
-    if (!refit(region, points_of(region.triangles), kCornersOnTheWay, kWorthOnTheWay))
-      return std::nullopt;
+    if (!refit(region, points_of(region.triangles), kCornersOnTheWay)) return std::nullopt;
   }
   const std::vector<std::uint32_t> reached = region.triangles;
   std::optional<Region> outcome;

@@ -38,7 +38,8 @@ class FlatBalls {
 /// Grows regions over smooth edges. Not thread safe: one per thread.
 class RegionGrower {
  public:
-  RegionGrower(const Solid& solid, const Facets& facets, double quantum_mm);
+  /// plain: the slow twin of what is not asked twice.
+  RegionGrower(const Solid& solid, const Facets& facets, double quantum_mm, bool plain = false);
 
   /// The region of a surface fitted to seed triangles: grown in doubling steps with a fit after
   /// each, cut back to corners within share * size + rounding. Nothing when fewer triangles than
@@ -84,8 +85,7 @@ class RegionGrower {
             const std::optional<Region>& outcome);
   bool starts(Region& region, std::span<const std::uint32_t> seeds);
   bool settles(Region& region, std::size_t least);
-  bool refit(Region& region, const std::vector<Vec3>& corners, std::size_t most,
-             double worth_going_on) const;
+  bool refit(Region& region, const std::vector<Vec3>& corners, std::size_t most) const;
   bool fit_all(Region& region);
   bool shows_enough(const Region& region);
   bool shows_enough_of_sphere(const Region& region);
@@ -94,6 +94,7 @@ class RegionGrower {
   const Topology& topology_;
   const Facets& facets_;
   double rounding_mm_ = 0.0;
+  bool plain_ = false;
   std::vector<std::array<std::uint8_t, 3>> edges_;
   std::vector<std::uint32_t> triangle_mark_, point_mark_;
   std::uint32_t mark_ = 0;

@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "common/geometry/kernels/fit_sums.h"
 #include "common/geometry/recognition/surface_guess.h"
 #include "common/geometry/surface_at.h"
 
@@ -25,10 +26,8 @@ constexpr double kFlatRadius = 1e4;
 // Below this half angle a cone is a cylinder, and above its complement a plane. rad
 constexpr double kLeastHalfAngle_rad = 1e-4;
 
-// Points are taken four at a time. Each lane has its own sums, which are added in one order: the
-// result does not depend on how wide the registers of the machine are.
-using Lanes = Eigen::Array4d;
-constexpr std::size_t kLanes = 4;  // of Lanes
+// Points that a kernel takes at a time.
+constexpr std::size_t kLanes = 4;
 
 // Point, axis, sizes.
 constexpr int parameters_of(SurfaceKind kind) {
@@ -61,64 +60,14 @@ struct Model {
   }
 };
 
-// Points about the origin with unit extent, by coordinate; places behind the last are zero.
+// Points about the origin with unit extent, in blocks of four x, four y, four z; places behind the
+// last are zero.
 struct Scaled {
   Vec3 middle = Vec3::Zero();
   double extent = 1.0;
-  std::size_t count = 0, blocks = 0;
-  std::vector<std::array<Lanes, 3>> xyz;
+  std::size_t count = 0;
+  std::vector<double> blocks;
 };
-
-// Residuals and their derivatives by the parameters, of one block.
-template <SurfaceKind kind>
-struct Rows {
-  Lanes residual;
-  std::array<Lanes, parameters_of(kind)> slope;
-};
-
-Lanes inverse_or_zero(const Lanes& length) {
-  return (length > 0.0).select(length.inverse(), Lanes::Zero());
-}
-
-template <SurfaceKind kind>
-void set_rows(const Model& m, const std::array<Lanes, 3>& at, Rows<kind>& rows) {
-  const Lanes dx = at[0] - m.p.x(), dy = at[1] - m.p.y(), dz = at[2] - m.p.z();
-  if constexpr (kind == SurfaceKind::kSphere) {
-    const Lanes length = (dx * dx + dy * dy + dz * dz).sqrt(), inverse = inverse_or_zero(length);
-    rows.residual = length - m.size;
-    rows.slope = {-dx * inverse, -dy * inverse, -dz * inverse, Lanes::Constant(-1.0)};
-    return;
-  }
-  const Lanes along = dx * m.a.x() + dy * m.a.y() + dz * m.a.z();
-  const Lanes x = dx * m.u.x() + dy * m.u.y() + dz * m.u.z();
-  const Lanes y = dx * m.v.x() + dy * m.v.y() + dz * m.v.z();
-  const Lanes rho = (x * x + y * y).sqrt(), inverse = inverse_or_zero(rho);
-  const Lanes wu = x * inverse, wv = y * inverse;
-  if constexpr (kind == SurfaceKind::kCylinder) {
-    rows.residual = rho - m.size;
-    rows.slope = {-wu, -wv, -along * wu, -along * wv, Lanes::Constant(-1.0)};
-  } else if constexpr (kind == SurfaceKind::kCone) {
-    const Lanes q = rho - m.size;
-    const Lanes tilt = -m.cosine * along - m.sine * rho;
-    rows.residual = q * m.cosine - along * m.sine;
-    rows.slope = {-m.cosine * wu,
-                  -m.cosine * wv,
-                  tilt * wu,
-                  tilt * wv,
-                  Lanes::Constant(-m.cosine),
-                  -m.sine * q - m.cosine * along};
-  } else if constexpr (kind == SurfaceKind::kTorus) {
-    const Lanes q = rho - m.size;
-    const Lanes tube = (q * q + along * along).sqrt(), one = inverse_or_zero(tube);
-    const Lanes to_rho = q * one, to_z = along * one;  // derivatives of the residual
-    const Lanes tilt = to_z * rho - to_rho * along;
-    rows.residual = tube - m.other;
-    rows.slope = {-to_rho * wu, -to_rho * wv,         tilt * wu, tilt * wv, -to_z,
-                  -to_rho,      Lanes::Constant(-1.0)};
-  }
-}
-
-double sum_of(const Lanes& l) { return (l[0] + l[1]) + (l[2] + l[3]); }
 
 // What one pass over the points tells: the cost, and the normal equations of the next step.
 template <SurfaceKind kind>
@@ -129,38 +78,34 @@ struct Sums {
   Step<kind> gradient;
 };
 
+template <SurfaceKind kind>
+geometry::FitKernels::Sum kernel_of(const geometry::FitKernels& kernels) {
+  if (kind == SurfaceKind::kCylinder) return kernels.cylinder;
+  if (kind == SurfaceKind::kCone) return kernels.cone;
+  return kind == SurfaceKind::kSphere ? kernels.sphere : kernels.torus;
+}
+
 // Stops where the cost so far is not below limit: it only grows.
 template <SurfaceKind kind>
 Sums<kind> sums_of(const Model& m, const Scaled& points, double limit) {
-  constexpr std::size_t kLookEvery = 8;  // blocks
   constexpr int n = parameters_of(kind);
-  Lanes cost = Lanes::Zero();
-  std::array<Lanes, n> gradient;
-  std::array<Lanes, n*(n + 1) / 2> normal;
-  gradient.fill(Lanes::Zero());
-  normal.fill(Lanes::Zero());
-  Rows<kind> rows;
-  for (std::size_t b = 0; b < points.blocks; ++b) {
-    set_rows<kind>(m, points.xyz[b], rows);
-    if ((b + 1) * kLanes > points.count)
-      for (std::size_t lane = points.count - b * kLanes; lane < kLanes; ++lane) {
-        rows.residual[static_cast<Eigen::Index>(lane)] = 0.0;
-        for (Lanes& slope : rows.slope) slope[static_cast<Eigen::Index>(lane)] = 0.0;
-      }
-    cost += rows.residual * rows.residual;
-    if (b % kLookEvery == 0 && sum_of(cost) >= limit) break;
-    std::size_t entry = 0;
-    for (std::size_t i = 0; i < n; ++i) {
-      gradient[i] += rows.residual * rows.slope[i];
-      for (std::size_t j = 0; j <= i; ++j) normal[entry++] += rows.slope[i] * rows.slope[j];
-    }
-  }
+  const geometry::FitModel model{{m.p.x(), m.p.y(), m.p.z()},
+                                 {m.a.x(), m.a.y(), m.a.z()},
+                                 {m.u.x(), m.u.y(), m.u.z()},
+                                 {m.v.x(), m.v.y(), m.v.z()},
+                                 m.size,
+                                 m.other,
+                                 m.cosine,
+                                 m.sine};
+  geometry::FitPass pass;
+  kernel_of<kind>(geometry::best_fit_sums())(model, points.blocks.data(), points.count, limit,
+                                             pass);
   Sums<kind> sums;
-  sums.cost = sum_of(cost);
-  std::size_t entry = 0;
+  sums.cost = pass.cost;
+  const double* entry = pass.normal;
   for (int i = 0; i < n; ++i) {
-    sums.gradient[i] = sum_of(gradient[static_cast<std::size_t>(i)]);
-    for (int j = 0; j <= i; ++j) sums.normal(i, j) = sum_of(normal[entry++]);
+    sums.gradient[i] = pass.gradient[i];
+    for (int j = 0; j <= i; ++j) sums.normal(i, j) = *entry++;
   }
   return sums;
 }
@@ -219,12 +164,11 @@ Scaled scaled(std::span<const Vec3> points) {
   out.extent = std::sqrt(extent2);
   if (!(out.extent > 0.0)) return out;
   out.count = points.size();
-  out.blocks = (points.size() + kLanes - 1) / kLanes;
-  out.xyz.assign(out.blocks, {Lanes::Zero(), Lanes::Zero(), Lanes::Zero()});
+  out.blocks.assign((points.size() + kLanes - 1) / kLanes * 3 * kLanes, 0.0);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Vec3 at = (points[i] - out.middle) / out.extent;
-    const auto lane = static_cast<Eigen::Index>(i % kLanes);
-    for (int k = 0; k < 3; ++k) out.xyz[i / kLanes][static_cast<std::size_t>(k)][lane] = at[k];
+    double* block = &out.blocks[i / kLanes * 3 * kLanes + i % kLanes];
+    for (int k = 0; k < 3; ++k) block[static_cast<std::size_t>(k) * kLanes] = at[k];
   }
   return out;
 }

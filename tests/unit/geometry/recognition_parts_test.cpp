@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <random>
 #include <set>
+#include <tuple>
 
+#include "common/geometry/kernels/fit_sums.h"
 #include "common/geometry/recognition/measure.h"
 #include "common/geometry/recognition/recognition.h"
 #include "common/geometry/recognition/region.h"
@@ -132,6 +134,40 @@ TEST(SurfaceFit, GivesUpPointsThatAreFartherOffThanAsked) {
   const auto points = points_on(truth, 40, 0.5, dice);
   EXPECT_TRUE(fitted_surface(truth, points, 1e-12));
   EXPECT_FALSE(fitted_surface(truth, points, 1e-12, 1e-3));
+}
+
+// Every kind, counts that fill blocks and that do not, sums that go to the end and that stop
+// before.
+TEST(FitSums, WideRegistersGiveTheSameBits) {
+  const geometry::FitKernels* wide = geometry::wide_fit_sums();
+  if (wide == nullptr) GTEST_SKIP() << "no wide registers on this machine";
+  const geometry::FitKernels& plain = geometry::portable_fit_sums();
+  Dice dice(14);
+  for (int i = 0; i < test::effort(500); ++i) {
+    geometry::FitModel m{};
+    for (double* of : {m.p, m.a, m.u, m.v})
+      for (int k = 0; k < 3; ++k) of[k] = dice.between(-1.0, 1.0);
+    m.size = dice.between(0.1, 2.0);
+    m.other = dice.between(0.05, 1.0);
+    m.cosine = std::cos(m.other);
+    m.sine = std::sin(m.other);
+    const std::size_t count = 1 + static_cast<std::size_t>(dice.between(0.0, 70.0));
+    std::vector<double> blocks((count + 3) / 4 * 12, 0.0);
+    for (double& x : blocks) x = dice.between(-1.0, 1.0);
+    const double limit = i % 3 == 0 ? dice.between(0.0, 10.0) : 1e300;
+    for (const auto& [fast, slow, n] : {std::tuple{wide->cylinder, plain.cylinder, 5},
+                                        {wide->cone, plain.cone, 6},
+                                        {wide->sphere, plain.sphere, 4},
+                                        {wide->torus, plain.torus, 7}}) {
+      geometry::FitPass a, b;
+      fast(m, blocks.data(), count, limit, a);
+      slow(m, blocks.data(), count, limit, b);
+      EXPECT_EQ(a.cost, b.cost) << i;
+      for (int k = 0; k < n; ++k) EXPECT_EQ(a.gradient[k], b.gradient[k]) << i << " of " << n;
+      for (int k = 0; k < n * (n + 1) / 2; ++k)
+        EXPECT_EQ(a.normal[k], b.normal[k]) << i << " of " << n;
+    }
+  }
 }
 
 // More corners than are kept at once, in an order in which kept ones are met again and in one in

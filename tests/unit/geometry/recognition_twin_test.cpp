@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <random>
 
 #include "common/geometry/recognition/recognition.h"
 #include "tests/support/effort.h"
@@ -131,6 +132,31 @@ TEST(RecognitionTwin, FindsTheSameSurfacesWithTheSameTriangles) {
   EXPECT_GT(p.of_kind[2], p.parts);
   EXPECT_GT(p.of_kind[3], p.parts / 2);
   EXPECT_GT(p.of_kind[4], p.parts / 6);
+}
+
+// What is not asked, because smaller seeds have failed, would not have been found: parts with
+// corners off by all that the three shares allow, and by more.
+TEST(RecognitionTwin, AsksNoSeedsInVain) {
+  std::mt19937_64 random(78);
+  std::size_t features = 0;
+  for (int i = 0; i < test::effort(40); ++i) {
+    TriangleMesh mesh = random_part(random);
+    const double size = bounding_sphere(mesh).radius_mm;
+    const double noise_mm = size * std::array{0.0, 1e-7, 3e-6, 5e-5, 1e-3}[i % 5];
+    std::uniform_real_distribution<double> noise(-noise_mm, noise_mm);
+    for (Vec3& x : mesh.points_mm) x += Vec3(noise(random), noise(random), noise(random));
+    const Solid solid(mesh);
+    const Recognition fast = recognize_features(solid);
+    const Recognition plain = recognize_features(solid, {.plain = true});
+    ASSERT_EQ(fast.features.size(), plain.features.size()) << i;
+    for (std::size_t k = 0; k < fast.features.size(); ++k) {
+      EXPECT_EQ(fast.features[k].name, plain.features[k].name) << i;
+      EXPECT_EQ(fast.features[k].triangles, plain.features[k].triangles)
+          << i << " " << fast.features[k].name;
+    }
+    features += fast.features.size();
+  }
+  EXPECT_GT(features, static_cast<std::size_t>(test::effort(40)));
 }
 
 // What the comparison has to see: a radius that is 5 um off, and a facet taken from a neighbour.
