@@ -21,9 +21,7 @@ struct PairFrame {
     // What first contact calls touching is touching here too.
     touch_mm = std::max(kAccuracyDefault_mm, rounding_mm);
     trivial = query.band_a->trivial && query.band_b->trivial;
-    near_mm =
-        trivial ? 0.0
-                : std::max(0.0, query.band_a->largest_offset_mm + query.band_b->largest_offset_mm);
+    if (!trivial) near_mm = std::max(0.0, near_of(*query.band_a, *query.band_b));
   }
 
   const Body& s(int role) const { return bodies[role]; }
@@ -48,6 +46,11 @@ struct PairFrame {
   bool has_insides() const { return bodies[0].has_inside && bodies[1].has_inside; }
   double smaller_radius_mm() const {
     return std::min(bodies[0].solid->sphere().radius_mm, bodies[1].solid->sphere().radius_mm);
+  }
+  /// Nobody asks how far edges reach of parts without an inside: they count as near by that alone.
+  double near_of(const SurfaceBand& a, const SurfaceBand& b) const {
+    return has_insides() ? a.largest_offset_mm + b.largest_offset_mm
+                         : a.farthest_mm() + b.farthest_mm();
   }
   /// A point of frame K of a role in the world.
   Vec3 in_world(int role, const Vec3& x_K) const { return X_W[1 - role] * x_K; }

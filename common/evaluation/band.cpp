@@ -55,7 +55,7 @@ void summarize(SurfaceBand& band, const Solid& solid) {
                  face.deviation_mm.hi + std::max(0.0, face.unsure_mm.hi) + face.tolerance_mm.hi);
   }
   band.largest_travel_mm = 0.0;
-  if (band.trivial || !(band.largest_offset_mm > 0.0) || !solid.topology().closed()) return;
+  if (band.trivial || !(band.largest_offset_mm > 0.0)) return;
   for (const Tip& tip : find_tips(solid, band))
     band.largest_travel_mm = std::max(band.largest_travel_mm, tip.travel_mm);
 }

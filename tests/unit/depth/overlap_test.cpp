@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 #include <random>
 
 #include "tests/unit/depth/overlap_case.h"
@@ -162,6 +163,39 @@ TEST(Overlap, OpenMeshesCrossButHaveNoDepth) {
   EXPECT_EQ(worst_class(result), CollisionClass::kPotential);
   c.X_WA = Pose::translation({-3, 0, 0});
   EXPECT_TRUE(overlap_of(c).regions.empty());
+}
+
+// A block on its edge before a wall: its edge comes out farther than its faces, in a part without
+// an inside as well.
+TEST(Overlap, AnOpenPartReachesAsFarAsItsEdges) {
+  TriangleMesh open = box({5, 5, 5});
+  std::erase_if(open.triangles, [&](const auto& t) {  // without its bottom
+    return open.points_mm[t[0]].z() + open.points_mm[t[1]].z() + open.points_mm[t[2]].z() < -14.0;
+  });
+  constexpr double kOffset_mm = 0.05, kTurn_rad = 0.25 * std::numbers::pi;
+  const double reach_mm = kOffset_mm * (1.0 + std::numbers::sqrt2);
+  Case c{solid(open), solid(box({5, 5, 5}))};
+  const auto band = [&](const SolidPtr& part) {
+    BandInput input;
+    input.solid = part.get();
+    input.rest = {{-kOffset_mm, kOffset_mm}, "±0.05 mm"};
+    return build_band(input);
+  };
+  c.band_a = band(c.a);
+  c.band_b = band(c.b);
+  c.refinement = Refinement::kDecided;
+  c.X_WA.q = Quat(Eigen::AngleAxisd(kTurn_rad, Vec3::UnitZ()));
+  const auto at = [&](double gap_mm) {
+    c.X_WB = Pose::translation({5.0 + 5.0 * std::numbers::sqrt2 + gap_mm, 0.3, 0.2});
+    const CollisionClass word = worst_class(overlap_of(c));
+    EXPECT_EQ(word, worst_class(
+                        overlap_of({c.b, c.a, c.band_b, c.band_a, c.X_WB, c.X_WA, c.refinement})));
+    return word;
+  };
+  EXPECT_FALSE(c.a->has_inside());
+  for (const double gap_mm : {0.09, 0.105, 0.115, reach_mm - 2e-4})
+    EXPECT_EQ(at(gap_mm), CollisionClass::kPotential) << gap_mm;
+  EXPECT_EQ(at(5.0 * reach_mm), CollisionClass::kNone);
 }
 
 // The same answers anywhere, at any scale.

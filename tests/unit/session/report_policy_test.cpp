@@ -1,6 +1,9 @@
 // Policy report: parts go where they are asked to go; every collision is told.
 #include <gtest/gtest.h>
 
+#include <numbers>
+
+#include "common/evaluation/band.h"
 #include "common/session/tick/judge_world.h"
 #include "tests/unit/session/session_builder.h"
 
@@ -93,6 +96,27 @@ TEST_F(ReportPolicy, WhatMayLieInAnOpenPartIsCountedEveryTick) {
   const JudgeReport judged = judge_world(session.world, scratch, false);
   ASSERT_EQ(judged.pairs.size(), 1U);
   EXPECT_TRUE(judged.pairs[0].not_examined);
+}
+
+// Its edge comes out farther than its faces, and is looked at from there on.
+TEST_F(ReportPolicy, AnOpenPartReachesAsFarAsItsEdges) {
+  TriangleMesh open = cube_mesh(10);
+  open.triangles.erase(open.triangles.begin(), open.triangles.begin() + 2);  // without its bottom
+  const Pose on_edge{Quat(Eigen::AngleAxisd(0.25 * std::numbers::pi, Vec3::UnitZ())), Vec3::Zero()};
+  const PartId block = session.add("block", open, on_edge, false);
+  const double gap_mm = 0.115, x = 5.0 + 5.0 * std::numbers::sqrt2 + gap_mm;
+  const PartId wall = session.add("wall", cube_mesh(10), at(x + 2, 0.3, 0.2), true);
+  for (const PartId id : {block, wall}) {
+    BandInput input;
+    input.solid = session.world.find(id)->solid.get();
+    input.rest = {{-0.05, 0.05}, "±0.05 mm"};
+    session.world.find(id)->band = build_band(input);
+  }
+  session.world.evaluates = true;
+  session.grab(ada, wall);
+  const StepReport report = tick({session.push(ada, wall, Vec3(-2, 0, 0))});
+  ASSERT_EQ(report.events.size(), 1U);
+  EXPECT_EQ(report.events[0].verdict.collision_class, CollisionClass::kPotential);
 }
 
 // Overlap within the rounding of two files is never told as real.
