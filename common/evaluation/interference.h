@@ -31,7 +31,7 @@ Interval modelled_overlap_mm(const InterferenceZones& zones);
 /// interval, since the overlap is known to a bracket. Nothing where no tolerance is declared, where
 /// something else than the tolerances makes possible differ from certain, and for a position
 /// without parallel axes. Ranks potential clashes, never changes a class. Without a position two
-/// erfc, with one up to 2,400.
+/// erfc, with one some 1,000 and 2,000 exponentials.
 std::optional<Interval> interference_probability(const InterferenceZones& zones);
 
 /// Is the surface of a deciding face known, up to its residual? Not by estimate, by a chord error

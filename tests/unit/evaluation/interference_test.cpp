@@ -90,6 +90,27 @@ TEST(Interference, CoaxialFacesHaveAClosedForm) {
     }
 }
 
+// Modelled as far apart as the zones are wide, where the distance of the axes is least normal. The
+// numbers are those of a quadrature over rings of places and the share of their arcs, made apart
+// from this program.
+TEST(Interference, AxesThatAreModelledApartAreExact) {
+  struct {
+    double modelled_mm, size_mm, place_a_mm, place_b_mm, apart_mm;
+    bool nested;
+    double p;
+  } const cases[] = {{-0.002, 6 * 0.001201850425154663, 0.05, 0.005, 0.005, true, 0.7432687},
+                     {0.006, 6 * 0.0009428090415820635, 0.1, 0.02, 0.01, true, 0.9757689},
+                     {0.0043, 0.0, 0.06, 0.0, 0.03, true, 0.7304498},
+                     {0.0043, 0.0, 0.0, 0.06, 0.03, false, 0.6070446}};
+  for (const auto& c : cases) {
+    const Interval half{-0.5 * c.size_mm, 0.5 * c.size_mm};
+    const ParallelAxes axes{c.apart_mm, c.nested};
+    EXPECT_NEAR(p_of(zones_at(c.modelled_mm, half, {}, c.place_a_mm, c.place_b_mm, axes)), c.p,
+                2e-5)
+        << c.modelled_mm << " " << c.apart_mm;
+  }
+}
+
 // Unevenly lying zones, faces without a size tolerance, zones of one or both axes, axes apart by
 // nothing to much more than the zones, in a hole and side by side.
 TEST(Interference, AgreesWithDrawsAtRandomZones) {
