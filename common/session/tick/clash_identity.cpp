@@ -88,12 +88,20 @@ double hysteresis_mm(const Verdict& verdict) {
 }
 
 // A class is entered at its threshold and left beyond it, so that what trembles about a threshold
-// is told once.
+// is told once. Real is left as soon as that is proven, or it would be said of what is not.
 bool is_left(CollisionClass told, const Verdict& now) {
-  const double h = hysteresis_mm(now);
-  if (told == CollisionClass::kReal && now.collision_class == CollisionClass::kPotential)
-    return now.real_above_mm - now.delta_mm.hi >= h;
-  return now.margin_mm >= h;
+  const bool has_zone = now.real_above_mm > now.fake_below_mm;
+  if (told == CollisionClass::kReal && has_zone) return now.delta_mm.hi <= now.real_above_mm;
+  return now.margin_mm >= hysteresis_mm(now);
+}
+
+// And so it is entered again only beyond its threshold. How deep it is may not be known yet.
+bool is_entered_again(const OpenClash& clash, const Verdict& now, std::uint64_t tick) {
+  if (now.collision_class != CollisionClass::kReal || clash.worst_class != CollisionClass::kReal)
+    return true;
+  const double least_mm = now.real_above_mm + hysteresis_mm(now);
+  return now.delta_mm.lo >= least_mm ||
+         (now.delta_mm.hi >= least_mm && tick >= clash.last.tick + kClashQuietTicks);
 }
 
 // Was what is stated of the faces another one when the clash was told last?
@@ -103,13 +111,13 @@ bool thresholds_moved(const Verdict& told, const Verdict& now) {
          std::abs(now.real_above_mm - told.real_above_mm) > h;
 }
 
-// Worth an event? A worse class always, a better one when it is beyond the threshold for certain or
-// judged anew by decision (nothing trembles there), other thresholds by decision, a growing depth
-// now and then.
+// Worth an event? A worse class, a better one when it is beyond the threshold for certain or judged
+// anew by decision (nothing trembles there), other thresholds by decision, a growing depth now and
+// then.
 bool change_is_due(const OpenClash& clash, const Verdict& verdict, std::uint64_t tick, bool anew) {
   if (clash.revised) return true;
   const CollisionClass told = clash.last.verdict.collision_class;
-  if (verdict.collision_class > told) return true;
+  if (verdict.collision_class > told) return anew || is_entered_again(clash, verdict, tick);
   if (anew && verdict.collision_class < told) return true;
   if (anew && thresholds_moved(clash.last.verdict, verdict)) return true;
   if (verdict.collision_class < told) return is_left(told, verdict);
@@ -270,10 +278,11 @@ void match_clashes(const World& world, PairWork& pair, double distance_mm) {
       const OpenClash& clash = open[static_cast<std::size_t>(seen.open)];
       pair.judged.keeps[static_cast<std::size_t>(seen.open)] = 1;
       seen.tell = change_is_due(clash, seen.verdict, world.tick, anew);
-      const bool better = seen.verdict.collision_class < clash.last.verdict.collision_class;
+      const CollisionClass told = clash.last.verdict.collision_class;
+      const bool better = seen.verdict.collision_class < told;
       // At rest, where the depth cannot be known well enough, what a fresh look says is told.
       seen.tell |= better && pair.judged.in_full && pair.status.undecided;
-      pair.judged.unsettled |= better && !seen.tell;
+      pair.judged.unsettled |= seen.verdict.collision_class != told && !seen.tell;
     }
   }
   // 2. Hysteresis: not interfering any more, but by less than can be told for certain.

@@ -134,7 +134,7 @@ struct JudgedPair {
   JudgementQuery query;  ///< of that judgement
   bool tells = false;    ///< an event of it is due
   std::vector<SeenRegion> seen;
-  bool unsettled = false;  ///< a better class than told, but within the hysteresis
+  bool unsettled = false;  ///< another class than told, but within the hysteresis
   bool in_full = false;    ///< then its depth is refined completely
   double t_potential = kNever, t_real = kNever;  ///< of the tick; for pairs with an event
   std::vector<char> keeps;  ///< by open clash: not seen, but not gone either (hysteresis)

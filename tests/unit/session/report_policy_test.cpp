@@ -338,5 +338,33 @@ TEST_F(ReportPolicy, TremblingAtTheThresholdIsQuiet) {
   EXPECT_EQ(events, 0U);
 }
 
+// Where real is left, it is not told any more, however little it is left by; and trembling about
+// the threshold is as quiet.
+TEST_F(ReportPolicy, RealIsToldOnlyOfWhatIs) {
+  const PartId wall =
+      session.add("wall", box_mesh(Vec3(0, -50, -50), Vec3(10, 50, 50)), at(0, 0, 0), false);
+  const PartId peg = session.add("peg", cube_mesh(2), at(-5, 0, 0), true);
+  session.set_tolerance(wall, 0.05);
+  session.set_tolerance(peg, 0.05);
+  session.grab(ada, peg);
+  double overlap_mm = -4.0;
+  const auto to = [&](double mm) {
+    const double by = mm - overlap_mm;
+    overlap_mm = mm;
+    return tick({session.push(ada, peg, Vec3(by, 0, 0))}).events;
+  };
+  const auto expect_told = [&](const std::vector<ClashEvent>& events, CollisionClass told) {
+    ASSERT_EQ(events.size(), 1U) << overlap_mm;
+    EXPECT_EQ(events[0].verdict.collision_class, told) << overlap_mm;
+  };
+  expect_told(to(0.1005), CollisionClass::kReal);
+  expect_told(to(0.0996), CollisionClass::kPotential);
+  for (int i = 0; i < 60; ++i) EXPECT_EQ(to(i % 2 ? 0.0996 : 0.1004).size(), 0U) << i;
+  expect_told(to(0.103), CollisionClass::kReal);
+  expect_told(to(0.0999), CollisionClass::kPotential);
+  EXPECT_EQ(to(0.1004).size(), 0U);
+  for (int i = 0; i < 40; ++i) EXPECT_EQ(tick({}).events.size(), 0U) << i;
+}
+
 }  // namespace
 }  // namespace mortise
