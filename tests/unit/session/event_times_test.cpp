@@ -165,11 +165,13 @@ std::size_t events_of_trembling(double x_mm, double tolerance_mm, double amplitu
 }
 
 // Thresholds of two blocks with +-0.05: potential from a gap of 0.1, real from an overlap of 0.1.
+// There it is told as potential, as real, and as not real any more: three events, then none.
 TEST(Hysteresis, AThousandTremblingTicksAreOneEventAThreshold) {
   for (const double threshold : {-0.1, 0.1}) {
-    EXPECT_LE(events_of_trembling(threshold, 0.05, 1e-4), 2U) << threshold;
+    const std::size_t most = threshold > 0.0 ? 3 : 2;
+    EXPECT_LE(events_of_trembling(threshold, 0.05, 1e-4), most) << threshold;
     // Within 1 % of the width between the thresholds, 2 um, but not beyond 1 um.
-    EXPECT_LE(events_of_trembling(threshold, 0.05, 4e-4, 100), 2U) << threshold;
+    EXPECT_LE(events_of_trembling(threshold, 0.05, 4e-4, 100), most) << threshold;
     // What really goes to and fro is told each time.
     EXPECT_GT(events_of_trembling(threshold, 0.05, 5e-3, 50), 45U) << threshold;
   }
@@ -178,6 +180,7 @@ TEST(Hysteresis, AThousandTremblingTicksAreOneEventAThreshold) {
 }
 
 // Each of the three classes of 20 H7/g6: pushed aside to where the class changes, trembling there.
+// Real is told once, and left once.
 TEST(Hysteresis, AFitTremblingAtItsThresholds) {
   const shapes::FitOffsets g6 = shapes::fit_offsets("H7/g6", 10.0);
   for (const double aside : {0.0035, 0.0205}) {
@@ -202,7 +205,7 @@ TEST(Hysteresis, AFitTremblingAtItsThresholds) {
               .events.size();
     }
     EXPECT_GE(events, 1U);
-    EXPECT_LE(events, 2U) << aside;
+    EXPECT_LE(events, aside > 0.01 ? 3U : 2U) << aside;
   }
 }
 
