@@ -81,6 +81,23 @@ bool shows_enough_of_torus(const Region& region, const RegionMeasure& m) {
   return most <= (1.0 + kEqualSteps) * least;
 }
 
+// The widest angle about the centre stands for the arc; told by the places of the facets, since the
+// normals of a nearly flat region turn by more than it spans.
+bool bends_enough(const Region& ball, std::span<const OrientedPoint> facets) {
+  const Surface& s = ball.surface;
+  if (facets.empty()) return false;
+  Vec3 mean_place = Vec3::Zero();
+  for (const OrientedPoint& f : facets) mean_place += (f.point - s.point).normalized();
+  double least = -1.0;
+  // All around the ball places cancel, and no side is its middle.
+  if (mean_place.norm() > 1e-9 * static_cast<double>(facets.size())) {
+    least = 1.0;
+    for (const OrientedPoint& f : facets)
+      least = std::min(least, (f.point - s.point).normalized().dot(mean_place.normalized()));
+  }
+  return ball.residual_mm <= kShareOfArcHeight * s.radius_mm * (1.0 - least);
+}
+
 }  // namespace
 
 void FlatBalls::keep(const Region& ball, std::size_t triangles_of_mesh) {
@@ -240,32 +257,15 @@ bool RegionGrower::fit_all(Region& region) {
 
 bool RegionGrower::shows_enough(const Region& region) {
   const Surface& s = region.surface;
-  if (s.kind == SurfaceKind::kSphere) return shows_enough_of_sphere(region);
+  // Corners on two circles lie on a cone as well, and those of a low pyramid on flats.
+  if (s.kind == SurfaceKind::kSphere)
+    return bends_enough(region, normals_of(region.triangles)) &&
+           fix_one_quadric(points_of(region.triangles), region.residual_mm);
   const RegionMeasure m = measure_region(mesh_, s, region.triangles);
   if (s.kind == SurfaceKind::kTorus) return shows_enough_of_torus(region, m);
   if (m.steps < 3) return false;
   const double radius = size_mm(s, mesh_, region.triangles);
   return region.residual_mm <= kShareOfArcHeight * arc_height(radius, m.arc_rad);
-}
-
-// The widest angle about the centre stands for the arc; told by the places of the facets, since the
-// normals of a nearly flat region turn by more than it spans. Corners on two circles lie on a cone
-// as well, and those of a low pyramid on flats.
-bool RegionGrower::shows_enough_of_sphere(const Region& region) {
-  const Surface& s = region.surface;
-  const std::vector<OrientedPoint> facets = normals_of(region.triangles);
-  if (facets.empty()) return false;
-  Vec3 mean_place = Vec3::Zero();
-  for (const OrientedPoint& f : facets) mean_place += (f.point - s.point).normalized();
-  double least = -1.0;
-  // All around the ball places cancel, and no side is its middle.
-  if (mean_place.norm() > 1e-9 * static_cast<double>(facets.size())) {
-    least = 1.0;
-    for (const OrientedPoint& f : facets)
-      least = std::min(least, (f.point - s.point).normalized().dot(mean_place.normalized()));
-  }
-  if (region.residual_mm > kShareOfArcHeight * s.radius_mm * (1.0 - least)) return false;
-  return fix_one_quadric(points_of(region.triangles), region.residual_mm);
 }
 
 bool RegionGrower::settle(Region& region) {

@@ -88,7 +88,6 @@ class RegionGrower {
   bool refit(Region& region, const std::vector<Vec3>& corners, std::size_t most) const;
   bool fit_all(Region& region);
   bool shows_enough(const Region& region);
-  bool shows_enough_of_sphere(const Region& region);
 
   const TriangleMesh& mesh_;
   const Topology& topology_;
