@@ -122,7 +122,7 @@ struct PartMaker::Work {
   Publish publish;
 
   void run() {
-    run_behind_others();
+    run_as_others();
     std::unique_lock lock(mutex);
     while (true) {
       wake.wait(lock, [this] { return stop || !wishes.empty() || !discarded.empty(); });

@@ -2,20 +2,11 @@
 
 #include <pthread.h>
 #include <sched.h>
-#include <sys/resource.h>
-#include <sys/syscall.h>
-#include <unistd.h>
 
 #include <cstring>
 #include <string>
 
 namespace mortise {
-namespace {
-
-// Behind every other thread, and yet not at a standstill on a busy machine.
-constexpr int kNice = 10;
-
-}  // namespace
 
 Status run_before_others() {
   sched_param priority{};
@@ -32,11 +23,6 @@ Status run_before_others() {
 void run_as_others() {
   const sched_param ordinary{};
   (void)pthread_setschedparam(pthread_self(), SCHED_OTHER, &ordinary);
-}
-
-void run_behind_others() {
-  run_as_others();
-  (void)::setpriority(PRIO_PROCESS, static_cast<id_t>(::syscall(SYS_gettid)), kNice);
 }
 
 }  // namespace mortise

@@ -12,8 +12,4 @@ Status run_before_others();
 /// Gives the calling thread ordinary priority again, because threads inherit the priority.
 void run_as_others();
 
-/// Of a thread that works beside the ticks: it gives way to all others, whatever the thread that
-/// began it does.
-void run_behind_others();
-
 }  // namespace mortise

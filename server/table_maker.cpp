@@ -21,7 +21,7 @@ void TableMaker::make(FeatureSources sources) {
   MORTISE_CHECK(!is_busy_, "one table at a time");
   is_busy_ = true;
   std::thread([work = work_, sources = std::move(sources)] {
-    run_behind_others();
+    run_as_others();
     FeatureTable table = feature_table(sources);
     const std::lock_guard lock(work->mutex);
     work->made = std::move(table);

@@ -2,9 +2,6 @@
 
 #include <gtest/gtest.h>
 #include <pthread.h>
-#include <sys/resource.h>
-#include <sys/syscall.h>
-#include <unistd.h>
 
 #include <thread>
 
@@ -38,18 +35,6 @@ TEST(Scheduling, IsInheritedAndGivenBack) {
     run_as_others();
     EXPECT_EQ(own_policy(), SCHED_OTHER);
     EXPECT_EQ(policy_of_a_new_thread(), SCHED_OTHER);
-  }).join();
-}
-
-// Who works beside the ticks gives way, also where a thread before all others began it.
-TEST(Scheduling, WhatIsBesideTheTicksGivesWay) {
-  std::thread([] {
-    (void)run_before_others();
-    std::thread([] {
-      run_behind_others();
-      EXPECT_EQ(own_policy(), SCHED_OTHER);
-      EXPECT_EQ(getpriority(PRIO_PROCESS, static_cast<id_t>(::syscall(SYS_gettid))), 10);
-    }).join();
   }).join();
 }
 
