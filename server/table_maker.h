@@ -1,30 +1,23 @@
 #pragma once
-#include <memory>
+#include <future>
 #include <optional>
 
 #include "common/session/guide/feature_table.h"
 
 namespace mortise {
 
-/// Makes tables of features in a thread that gives way to the ticks: that of a part of a million
-/// triangles takes longer than a tick has.
+/// Makes tables of features beside the ticks: that of a part of a million triangles takes longer
+/// than a tick has. Whoever goes while one is made waits for it.
 class TableMaker {
  public:
-  TableMaker();
-  ~TableMaker();  ///< does not wait: the thread ends with its present table
-  TableMaker(const TableMaker&) = delete;
-  TableMaker& operator=(const TableMaker&) = delete;
-
   /// Begins one. Only while none is under way.
   void make(FeatureSources sources);
-  bool is_busy() const { return is_busy_; }  ///< until take() has given the table
-  /// The table, once it is made. Never blocks for longer than a move.
+  bool is_busy() const { return table_.valid(); }  ///< until take() has given the table
+  /// The table, once it is made. Does not wait.
   std::optional<FeatureTable> take();
 
  private:
-  struct Work;
-  std::shared_ptr<Work> work_;
-  bool is_busy_ = false;
+  std::future<FeatureTable> table_;
 };
 
 }  // namespace mortise

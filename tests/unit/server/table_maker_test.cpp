@@ -42,7 +42,7 @@ TEST(TableMaker, MakesWhatTheWorldWouldHaveTold) {
   EXPECT_FALSE(maker.is_busy());
   EXPECT_EQ(names_of(*made), names_of(then));
   EXPECT_EQ(made->meshes_waiting, then.meshes_waiting);
-  maker.make(feature_sources(world));  // and whoever goes while one is made waits for nothing
+  maker.make(feature_sources(world));  // and whoever goes while one is made waits for its end
 }
 
 }  // namespace
