@@ -13,7 +13,7 @@
 namespace mortise {
 
 /// Reads uploaded mesh files and makes all that a session needs of them, one after another, in a
-/// thread that gives way to all others: no tick waits for it. A file is read in the confined
+/// thread of ordinary priority: no tick waits for it. A file is read in the confined
 /// importer, as any other.
 class PartMaker {
  public:
