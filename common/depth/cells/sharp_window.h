@@ -62,8 +62,8 @@ class SharpWindow {
   FaceSet both_ways(FaceSet half_spaces) const;
   void clauses_in_plane(FaceSet held, std::vector<FaceSet>& found) const;
   void clauses_of_facet(std::size_t face, std::vector<FaceSet>& found) const;
-  /// What of a triangle lies in the box, and its place beside the half-spaces. Found out once:
-  /// whether none of it is inside, or all; whether none of it is outside, or all.
+  /// What of a triangle lies in the box. Once it is placed: the half-spaces of which none of it is
+  /// inside, or all; none outside, or all.
   struct Facet {
     std::uint32_t first = 0, count = 0;  // of corners_
     bool placed = false;
