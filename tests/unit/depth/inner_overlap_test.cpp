@@ -4,6 +4,7 @@
 
 #include <random>
 
+#include "common/ccd/distance.h"
 #include "common/depth/answer/convex_overlap.h"
 #include "common/depth/answer/region_report.h"
 #include "common/evaluation/band.h"
@@ -321,6 +322,113 @@ TEST(InnerOverlap, WhoLiesDeepInsideCostsLittle) {
   }
   EXPECT_GT(contained, asked / 5);
   EXPECT_LT(contained, asked);
+}
+
+// Signed depth of a point in a drawn part: its formula says on which side it is, and each triangle
+// by its own corners how far off. Shares no code with the search.
+double drawn_depth_mm(const polyhedra::Polyhedron& part, const Vec3& x) {
+  double nearest = kInfinity;
+  const TriangleMesh& mesh = part.solid->mesh();
+  const auto from_edge = [&](const Vec3& p, const Vec3& q) {
+    const double along = std::clamp((x - p).dot(q - p) / (q - p).squaredNorm(), 0.0, 1.0);
+    return (x - p - along * (q - p)).norm();
+  };
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    const Vec3 c[3] = {mesh.corner(t, 0), mesh.corner(t, 1), mesh.corner(t, 2)};
+    const Vec3 n = (c[1] - c[0]).cross(c[2] - c[0]).normalized();
+    bool above = true;  // the foot of x on the plane is in the triangle
+    for (int k = 0; k < 3; ++k) {
+      const Vec3& from = c[k];
+      const Vec3& to = c[(k + 1) % 3];
+      above &= n.cross(to - from).dot(x - from) >= 0.0;
+      nearest = std::min(nearest, from_edge(from, to));
+    }
+    if (above) nearest = std::min(nearest, std::fabs(n.dot(x - c[0])));
+  }
+  const bool inside = std::any_of(part.terms.begin(), part.terms.end(), [&](const auto& term) {
+    return std::all_of(term.begin(), term.end(), [&](int h) {
+      const polyhedra::HalfSpace& half = part.half_spaces[static_cast<std::size_t>(h)];
+      return half.n.dot(x) <= half.c;
+    });
+  });
+  return inside ? nearest : -nearest;
+}
+
+struct DrawnOverlap {
+  const polyhedra::Polyhedron &a, &b;
+  Pose X_AB;
+
+  double at_mm(const Vec3& x_B) const {
+    return drawn_depth_mm(a, X_AB * x_B) + drawn_depth_mm(b, x_B);
+  }
+
+  bool is_inside(const Vec3& x_B) const {
+    return drawn_depth_mm(a, X_AB * x_B) > 1e-6 && drawn_depth_mm(b, x_B) > 1e-6;
+  }
+
+  // The deepest of some random points, and of ever closer ones about the deepest few.
+  double sampled_mm(polyhedra::Random& random) const {
+    const Box& box = b.solid->bounds();
+    std::vector<std::pair<double, Vec3>> found;
+    for (int i = 0; i < 2000; ++i) {
+      const Vec3 x(polyhedra::between(random, box.lo.x(), box.hi.x()),
+                   polyhedra::between(random, box.lo.y(), box.hi.y()),
+                   polyhedra::between(random, box.lo.z(), box.hi.z()));
+      found.emplace_back(at_mm(x), x);
+    }
+    std::partial_sort(found.begin(), found.begin() + 6, found.end(),
+                      [](const auto& p, const auto& q) { return p.first > q.first; });
+    double most_mm = -kInfinity;
+    for (std::size_t i = 0; i < 6; ++i) {
+      auto& [depth_mm, x] = found[i];
+      double step_mm = 0.5;
+      for (int k = 0; k < 400; ++k) {
+        const Vec3 next =
+            x + step_mm * polyhedra::between(random, 0.0, 1.0) * polyhedra::direction(random);
+        const double next_mm = at_mm(next);
+        if (next_mm > depth_mm) {
+          depth_mm = next_mm;
+          x = next;
+        } else {
+          step_mm *= 0.97;
+        }
+      }
+      most_mm = std::max(most_mm, depth_mm);
+    }
+    return most_mm;
+  }
+};
+
+// Behind a hollow edge a part is deeper than the planes of its faces say, and the deepest point of
+// both may be one of neither surface.
+TEST(InnerOverlap, NothingIsDeeperThanToldBehindHollowEdges) {
+  polyhedra::Random random(2026);
+  int inside = 0, asked = 0;
+  const int pairs = test::effort(60);
+  for (int i = 0; i < pairs; ++i) {
+    const polyhedra::Polyhedron a = polyhedra::random_boxes(random),
+                                b = polyhedra::random_boxes(random);
+    Case c{a.solid, b.solid, a.band, b.band};
+    const Vec3 from = polyhedra::direction(random);
+    c.X_WA.q = polyhedra::rotation(random);
+    c.X_WA.p = 20.0 * from;
+    CcdScratch scratch;
+    for (int k = 0; k < 30; ++k)
+      c.X_WA.p -= distance(*c.a, c.X_WA, *c.b, c.X_WB, scratch).distance_mm * from;
+    c.X_WA.p -= std::pow(10.0, polyhedra::between(random, -2.0, 0.0)) * from;
+    const OverlapResult result = overlap_of(c);
+    if (result.regions.empty()) continue;
+    const OverlapRegion& deepest = result.regions.front();
+    const DrawnOverlap drawn{a, b, c.X_WA.inverse() * c.X_WB};
+    const double truth_mm = std::max(drawn.sampled_mm(random), drawn.at_mm(deepest.point_W));
+    EXPECT_LE(deepest.delta_mm.lo, truth_mm + 1e-9) << i;
+    EXPECT_GE(deepest.delta_mm.hi, truth_mm - 1e-9) << i << " " << deepest.delta_mm.lo;
+    inside += drawn.is_inside(deepest.point_W);
+    ++asked;
+  }
+  std::printf("%d of %d deepest inside\n", inside, asked);
+  EXPECT_GT(inside, asked / 10);
+  EXPECT_LT(inside, asked);
 }
 
 // Where the work ends the bracket stays wide, and true.
