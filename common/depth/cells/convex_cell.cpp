@@ -38,7 +38,51 @@ double ConvexCell::support_mm(const Vec3& n) const {
   const double along = n.dot(axis), off = arc.most(n - along * axis);
   for (const Circle& circle : circles)
     most = std::max(most, along * circle.z_mm + off * circle.r_mm);
+  const double length = zones.empty() ? 0.0 : n.norm();
+  for (const Zone& zone : zones)
+    if (length > 0.0 && is_zone(zone, zone.z_mm + zone.r_mm * along / length))
+      most = std::max(most, along * zone.z_mm + zone.r_mm * length);
   return most + n.dot(point);
+}
+
+std::optional<Vec3> ConvexCell::on_zone(const Zone& zone, const Vec3& d) const {
+  const double length = d.norm();
+  if (!is_zone(zone, zone.z_mm + zone.r_mm * d.dot(axis) / length)) return std::nullopt;
+  return point + zone.z_mm * axis + zone.r_mm / length * d;
+}
+
+double ConvexCell::farthest_from_mm(const Vec3& x, Vec3& at) const {
+  double most = -kInfinity;
+  const auto take = [&](const Vec3& of, double far) {
+    if (far <= most) return;
+    most = far;
+    at = of;
+  };
+  if (!round) {
+    for (const Vec3& corner : corners) take(corner, (corner - x).norm());
+    for (const ConvexCell& piece : pieces) {
+      Vec3 of = Vec3::Zero();
+      const double far = piece.farthest_from_mm(x, of);
+      take(of, far);
+    }
+    return most;
+  }
+  const double z = (x - point).dot(axis);
+  const Vec3 off = point + z * axis - x;
+  const double r = off.norm();
+  const Vec3 u = r > 0.0 ? Vec3(off / r) : across[0];
+  for (const Circle& circle : circles)
+    take(point + circle.z_mm * axis + circle.r_mm * u,
+         std::hypot(circle.z_mm - z, r + circle.r_mm));
+  for (const Zone& zone : zones) {
+    const Vec3 away = point + zone.z_mm * axis - x;
+    const double far = away.norm();
+    if (!(far > 0.0))
+      take(point + zone.z_mm * axis + zone.r_mm * across[0], zone.r_mm);
+    else if (const auto of = on_zone(zone, away))
+      take(*of, far + zone.r_mm);
+  }
+  return most;
 }
 
 Vec3 ConvexCell::farthest(const Vec3& n) const {
@@ -68,6 +112,11 @@ Vec3 ConvexCell::farthest(const Vec3& n) const {
       most = s;
       at = point + circle.z_mm * axis + circle.r_mm * u;
     }
+  for (const Zone& zone : zones)
+    if (const auto x = on_zone(zone, n); x && n.dot(*x - point) > most) {
+      most = n.dot(*x - point);
+      at = *x;
+    }
   return at;
 }
 
@@ -88,6 +137,7 @@ std::vector<Vec3> ConvexCell::around_farthest(const Vec3& n, double slack_mm) co
   for (const Circle& circle : circles)
     for (const Vec3& off : {u, Vec3(-u), v, Vec3(-v)})
       add(point + circle.z_mm * axis + circle.r_mm * off);
+  if (!zones.empty()) add(farthest(n));
   return around;
 }
 
@@ -119,8 +169,20 @@ Vec3 ConvexCell::nearest_of_round(const Vec3& x) const {
     at_r = near_r;
   };
   bool inside = circles.front().z_mm <= z && z <= circles.back().z_mm;
+  auto zone = zones.begin();
   for (std::size_t i = 0; i + 1 < circles.size(); ++i) {
     const Circle &p = circles[i], &q = circles[i + 1];
+    if (zone != zones.end() && zone->circle == i) {
+      const double dz = z - zone->z_mm, far = std::hypot(dz, r);
+      if (p.z_mm <= z && z <= q.z_mm) inside &= far <= zone->r_mm;
+      const Circle on{zone->z_mm + (far > 0.0 ? dz / far : 0.0) * zone->r_mm,
+                      (far > 0.0 ? r / far : 1.0) * zone->r_mm};
+      if (is_zone(*zone, on.z_mm)) take(on, on);
+      take(p, p);
+      take(q, q);
+      ++zone;
+      continue;
+    }
     inside &= (r - p.r_mm) * (q.z_mm - p.z_mm) <= (q.r_mm - p.r_mm) * (z - p.z_mm);
     take(p, q);
   }
@@ -144,8 +206,103 @@ void ConvexCell::set_faces(std::span<const Vec3> normals) {
   for (const Vec3& n : normals) faces.push_back({n, support_mm(n)});
 }
 
+namespace {
+
+// The least of a chain of circles and of balls at each height. Between heights where two of them
+// meet the same one is the least.
+class MeridianCut {
+ public:
+  using Circle = ConvexCell::Circle;
+
+  MeridianCut(const std::vector<Circle>& chain, std::span<const MeridianBall> balls)
+      : chain_(chain), balls_(balls) {}
+
+  // Sets what is left: circles, and zones between them. Heights nearer than `same` are one.
+  void cut(double same, std::vector<Circle>& circles, std::vector<ConvexCell::Zone>& zones) const {
+    double from = chain_.front().z_mm, to = chain_.back().z_mm;
+    for (const MeridianBall& ball : balls_) {
+      from = std::max(from, ball.z_mm - ball.r_mm);
+      to = std::min(to, ball.z_mm + ball.r_mm);
+    }
+    circles.clear();
+    if (!(to - from > same)) return;
+    circles.push_back({from, least(from)});
+    for (const double z : heights(from, to)) {
+      if (z - circles.back().z_mm <= same) {
+        circles.back().z_mm = z;  // what is left is larger
+        circles.back().r_mm = std::max(circles.back().r_mm, least(z));
+        continue;
+      }
+      const std::size_t owner = owner_at(0.5 * (circles.back().z_mm + z));
+      if (owner < balls_.size())
+        zones.push_back({circles.size() - 1, balls_[owner].z_mm, balls_[owner].r_mm});
+      circles.push_back({z, least(z)});
+    }
+  }
+
+ private:
+  double of_chain(double z) const {
+    std::size_t i = 0;
+    while (i + 2 < chain_.size() && chain_[i + 1].z_mm < z) ++i;
+    const Circle &p = chain_[i], &q = chain_[i + 1];
+    return p.r_mm + (q.r_mm - p.r_mm) * (z - p.z_mm) / (q.z_mm - p.z_mm);
+  }
+  static double of_ball(const MeridianBall& ball, double z) {
+    return std::sqrt(std::max(0.0, (ball.r_mm - (z - ball.z_mm)) * (ball.r_mm + z - ball.z_mm)));
+  }
+  // The number of the ball; that of all balls: the chain.
+  std::size_t owner_at(double z) const {
+    std::size_t owner = balls_.size();
+    double least = of_chain(z);
+    for (std::size_t i = 0; i < balls_.size(); ++i)
+      if (const double r = of_ball(balls_[i], z); r < least) {
+        least = r;
+        owner = i;
+      }
+    return owner;
+  }
+  double least(double z) const {
+    const std::size_t owner = owner_at(z);
+    return owner < balls_.size() ? of_ball(balls_[owner], z) : of_chain(z);
+  }
+
+  // Where something may change, ascending, the last one `to`.
+  std::vector<double> heights(double from, double to) const {
+    std::vector<double> all;
+    const auto add = [&](double z) {
+      if (from < z && z < to) all.push_back(z);
+    };
+    for (const Circle& circle : chain_) add(circle.z_mm);
+    for (const MeridianBall& ball : balls_) {
+      for (std::size_t i = 0; i + 1 < chain_.size(); ++i) {
+        const Circle &p = chain_[i], &q = chain_[i + 1];
+        const double slope = (q.r_mm - p.r_mm) / (q.z_mm - p.z_mm);
+        const double at = p.r_mm + slope * (ball.z_mm - p.z_mm);  // over the middle of the ball
+        const double square = 1.0 + slope * slope;
+        const double under = square * ball.r_mm * ball.r_mm - at * at;
+        if (!(under >= 0.0)) continue;
+        for (const double sign : {-1.0, 1.0})
+          add(ball.z_mm + (-slope * at + sign * std::sqrt(under)) / square);
+      }
+      for (const MeridianBall& other : balls_)
+        if (const double apart = other.z_mm - ball.z_mm; apart > 0.0)
+          add(0.5 * (ball.z_mm + other.z_mm +
+                     (ball.r_mm - other.r_mm) / apart * (ball.r_mm + other.r_mm)));
+    }
+    std::sort(all.begin(), all.end());
+    all.push_back(to);
+    return all;
+  }
+
+  const std::vector<Circle>& chain_;
+  std::span<const MeridianBall> balls_;
+};
+
+}  // namespace
+
 std::optional<ConvexCell> round_cell(const Vec3& point, const Vec3& axis,
-                                     std::span<const MeridianLine> lines) {
+                                     std::span<const MeridianLine> lines,
+                                     std::span<const MeridianBall> balls) {
   double size = 0.0;
   for (const MeridianLine& line : lines) size = std::max(size, std::fabs(line.c_mm));
   // Two lines at most 45 degrees apart may meet that much farther out; what is bounded is within.
@@ -185,6 +342,11 @@ std::optional<ConvexCell> round_cell(const Vec3& point, const Vec3& axis,
     else
       cell.circles.back().r_mm = std::max(cell.circles.back().r_mm, p.r_mm);
   if (!(cell.circles.back().z_mm > cell.circles.front().z_mm)) return std::nullopt;
+  if (!balls.empty()) {
+    const std::vector<Point> chain = cell.circles;
+    MeridianCut(chain, balls).cut(kSameShare * (size + 1.0), cell.circles, cell.zones);
+    if (cell.circles.size() < 2) return std::nullopt;
+  }
   cell.set_faces(std::array{axis, Vec3(-axis)});
   cell.middle = point + 0.5 * (cell.circles.front().z_mm + cell.circles.back().z_mm) * axis;
   return cell;

@@ -45,6 +45,13 @@ struct ConvexCell {
   Vec3 point = Vec3::Zero(), axis = Vec3::UnitZ();
   Vec3 across[2] = {Vec3::UnitX(), Vec3::UnitY()};  ///< unit, at right angles to the axis
   std::vector<Circle> circles;  ///< round: the body is their hull; z ascends, r is concave over z
+  /// Between the circle of this number and the next one the body bulges out to a ball about the
+  /// axis. Such bodies are whole.
+  struct Zone {
+    std::size_t circle = 0;
+    double z_mm = 0.0, r_mm = 0.0;  ///< of the ball: its middle along the axis, its radius
+  };
+  std::vector<Zone> zones;
 
   Arc arc;  ///< round, not whole: the body is the hull of these points of the circles
 
@@ -60,6 +67,8 @@ struct ConvexCell {
   /// Largest n · x over the body; of a point where it is reached. n need not be a unit vector.
   double support_mm(const Vec3& n) const;
   Vec3 farthest(const Vec3& n) const;
+  /// Largest distance of a point of the body from x; of a prism with round sides, no less than it.
+  double farthest_from_mm(const Vec3& x, Vec3& at) const;
   /// The middle of all that is no more than slack_mm less far. n: a unit vector.
   Vec3 farthest_middle(const Vec3& n, double slack_mm) const;
   /// Corners of it; some of a disc.
@@ -71,6 +80,11 @@ struct ConvexCell {
   void set_faces(std::span<const Vec3> normals);
 
  private:
+  bool is_zone(const Zone& zone, double z_mm) const {
+    return circles[zone.circle].z_mm <= z_mm && z_mm <= circles[zone.circle + 1].z_mm;
+  }
+  /// Of the ball of a zone the point along d; nullopt: it is not of the zone. d: not zero.
+  std::optional<Vec3> on_zone(const Zone& zone, const Vec3& d) const;
   Vec3 nearest_of_round(const Vec3& x) const;
 };
 
@@ -80,9 +94,16 @@ struct MeridianLine {
   double along = 0.0, off = 1.0, c_mm = 0.0;
 };
 
-/// The body of revolution below all lines; nullopt: it is empty. The lines must bound it.
+/// A ball about an axis, its middle z_mm along it.
+struct MeridianBall {
+  double z_mm = 0.0, r_mm = 0.0;
+};
+
+/// The body of revolution below all lines and within all balls; nullopt: it is empty. The lines
+/// must bound it.
 std::optional<ConvexCell> round_cell(const Vec3& point, const Vec3& axis,
-                                     std::span<const MeridianLine> lines);
+                                     std::span<const MeridianLine> lines,
+                                     std::span<const MeridianBall> balls = {});
 
 /// The polytope within all half-spaces, which must bound it; nullopt: it is empty. O(n⁴).
 std::optional<ConvexCell> polytope_cell(std::span<const HalfSpace> planes);

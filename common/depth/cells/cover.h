@@ -13,8 +13,9 @@ namespace mortise {
 struct Body;
 
 /// The wall of a round hole: material only where r >= r_mm + slope * z, r the distance from the
-/// axis and z the height above `point`. Part frame, mm.
+/// axis and z the height above `point`; of a socket r that from `point`. Part frame, mm.
 struct VoidWall {
+  bool is_socket = false;
   Vec3 point = Vec3::Zero(), axis = Vec3::UnitZ();
   double r_mm = 0.0, slope = 0.0;
   double cosine = 1.0;  ///< of the angle between wall and axis

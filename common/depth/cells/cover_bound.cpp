@@ -20,6 +20,7 @@ constexpr double kParallelToWall_mm = 1e-9;
 
 double beyond(const VoidWall& wall, const Vec3& x) {
   const Vec3 d = x - wall.point;
+  if (wall.is_socket) return d.norm() - wall.r_mm;
   const double z = d.dot(wall.axis);
   return wall.cosine * (wall.arc.most(d - z * wall.axis) - wall.r_mm - wall.slope * z);
 }
@@ -125,6 +126,8 @@ class RoundInWall {
   // Of the generator between two circles: where some point of it, with a rise among those given,
   // may be between the heights of the wall at some time of the span. False: nowhere.
   bool clip(std::size_t segment, const Rises& rises, double& from, double& to) const {
+    for (const ConvexCell::Zone& zone : s_.zones)
+      if (zone.circle == segment) return false;  // zones_in_wall() asks it
     const auto &p = s_.circles[segment], &q = s_.circles[segment + 1];
     const double slope = (q.r_mm - p.r_mm) / (q.z_mm - p.z_mm);
     from = kInfinity;
@@ -369,6 +372,67 @@ double polytope_in_wall(const ConvexCell& s, const Chord& chord, const VoidWall&
   return most + chord.spread_mm;
 }
 
+// A ball beside a wall. At a height of that the farthest point is as far off its axis as the middle
+// is and the circle there reaches; the farthest of all is where the wall's normal points.
+struct BallInWall {
+  double far = -kInfinity;
+  Vec3 at = Vec3::Zero();
+};
+BallInWall ball_in_wall(const Vec3& middle, double r_mm, const VoidWall& wall,
+                        const Interval& along) {
+  const Vec3 d = middle - wall.point;
+  const double z = d.dot(wall.axis);
+  const double lo = std::max(along.lo, z - r_mm), hi = std::min(along.hi, z + r_mm);
+  if (!(lo <= hi)) return {};
+  const Vec3 off = d - z * wall.axis;
+  const double height = std::clamp(z - r_mm * wall.cosine * wall.slope, lo, hi);
+  const double circle = std::sqrt(std::max(0.0, (r_mm - (height - z)) * (r_mm + height - z)));
+  const double far = wall.cosine * (wall.arc.most(off) + circle - wall.r_mm - wall.slope * height);
+  const Vec3 out =
+      wall.arc.farthest(off, wall.arc.whole ? Vec3(wall.axis.unitOrthogonal()) : wall.arc.middle);
+  return {far, middle + (height - z) * wall.axis + circle * out};
+}
+
+// Of the balls of all zones, whole. Heights are wider by as much as any changes.
+double zones_in_wall(const ConvexCell& s, const Chord& chord, const VoidWall& wall,
+                     const Interval& along, std::uint64_t& work, std::vector<Vec3>& places) {
+  double most = -kInfinity;
+  for (const ConvexCell::Zone& zone : s.zones) {
+    ++work;
+    const Vec3 middle_S = s.point + zone.z_mm * s.axis;
+    Vec3 middle[2];
+    for (int e = 0; e < chord.ends; ++e) middle[e] = chord.X_KS[e] * middle_S;
+    double change = chord.spread_mm;
+    // Any point of the ball turns with S: its height changes by no more than its way.
+    if (chord.ends == 2)
+      change += (middle[1] - middle[0]).norm() +
+                2.0 * zone.r_mm * (chord.X_KS[0].q.conjugate() * chord.X_KS[1].q).vec().norm();
+    for (int e = 0; e < chord.ends; ++e) {
+      const BallInWall ball =
+          ball_in_wall(middle[e], zone.r_mm, wall, {along.lo - change, along.hi + change});
+      if (!(ball.far > most)) continue;
+      most = ball.far;
+      places = {chord.X_KS[e].inverse() * ball.at};
+    }
+  }
+  return most + chord.spread_mm;
+}
+
+// Of a socket: |x - its middle| is convex.
+double in_socket(const ConvexCell& s, const Chord& chord, const VoidWall& wall, std::uint64_t& work,
+                 std::vector<Vec3>* places) {
+  ++work;
+  double most = -kInfinity;
+  for (int e = 0; e < chord.ends; ++e) {
+    Vec3 at = Vec3::Zero();
+    const double far = s.farthest_from_mm(chord.X_KS[e].inverse() * wall.point, at);
+    if (far <= most) continue;
+    most = far;
+    if (places) *places = {at};
+  }
+  return most - wall.r_mm + chord.spread_mm;
+}
+
 // A prism with round sides. At one height of it each point is a mean of points of its edges and
 // pieces there: those have the same height along the wall but for how much a cut across the prism
 // rises along the wall. f is convex.
@@ -426,6 +490,7 @@ double beyond_turning_mm(const ConvexCell& s, const ConvexCell& k, const Chord& 
 double beyond_wall_mm(const ConvexCell& s, const Chord& chord, const VoidWall& wall,
                       const Interval& along, double limit_mm, double useless_mm,
                       std::uint64_t& work, std::vector<Vec3>* places) {
+  if (wall.is_socket) return in_socket(s, chord, wall, work, places);
   if (!(along.lo <= along.hi)) return -kInfinity;
   if (chord.ends == 1) {
     const Vec3 x = chord.X_KS[0] * s.middle;
@@ -434,9 +499,12 @@ double beyond_wall_mm(const ConvexCell& s, const Chord& chord, const VoidWall& w
   }
   double most = -kInfinity;
   if (s.round) {
+    std::vector<Vec3> at_zones;
+    const double of_zones = zones_in_wall(s, chord, wall, along, work, at_zones);
     RoundInWall in_wall(s, chord, wall, along, work);
-    most = in_wall.run(limit_mm, useless_mm);
-    if (places) *places = in_wall.places();
+    most = in_wall.run(std::max(limit_mm, of_zones), useless_mm);
+    if (places) *places = of_zones > most ? std::move(at_zones) : in_wall.places();
+    most = std::max(most, of_zones);
   } else if (!s.pieces.empty()) {
     most = prism_in_wall(s, chord, wall, along, limit_mm, useless_mm, work, places);
   } else {

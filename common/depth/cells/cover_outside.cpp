@@ -19,11 +19,21 @@ constexpr std::size_t kMostPlanes = 12, kMostFacesTried = 24;
 // Normals with a larger cosine do not make a polytope much smaller.
 constexpr double kSimilar = 0.999;
 
-// r = at_zero + slope * z, and how far it is off in a layer, along its normal.
+// r = at_zero + slope * z, or a ball about the height at_zero; and how far it is off in a layer,
+// along its normal.
 struct OuterLine {
   double at_zero = 0.0, slope = 0.0;
   LayerOffsets offsets{};
-  double r(double z) const { return at_zero + slope * z; }
+  double ball_r = 0.0;  // 0: a line
+  bool is_ball() const { return ball_r > 0.0; }
+  double r(double z) const {
+    if (!is_ball()) return at_zero + slope * z;
+    return std::sqrt(std::max(0.0, (ball_r - (z - at_zero)) * (ball_r + z - at_zero)));
+  }
+  // How far a point is outside: of a line along r, no less than along its normal. Convex.
+  double beyond(double z, double off_axis) const {
+    return is_ball() ? std::hypot(z - at_zero, off_axis) - ball_r : off_axis - r(z);
+  }
   bool operator==(const OuterLine&) const = default;
 };
 
@@ -66,10 +76,11 @@ class Turned {
 
  private:
   static bool is_turned(const Surface* s) {
-    return s != nullptr && (s->kind == SurfaceKind::kCylinder || s->kind == SurfaceKind::kCone);
+    return s != nullptr && (s->kind == SurfaceKind::kCylinder || s->kind == SurfaceKind::kCone ||
+                            s->kind == SurfaceKind::kSphere);
   }
 
-  // That of the largest outer face, else of the largest bore.
+  // That of the largest outer face, else of the largest bore; of a ball any.
   bool find_axis() {
     std::map<std::uint16_t, double> area;
     for (std::uint32_t t = 0; t < f_.count(); ++t) {
@@ -82,7 +93,8 @@ class Turned {
     const double all = f_.body.solid->bvh().extent_mm * f_.body.solid->bvh().extent_mm * 1e3;
     for (const auto& [face, a] : area) {
       const Surface& s = *f_.body.band->faces[face].surface;
-      const double weight = a + (s.inward ? 0.0 : all);
+      const bool has_axis = s.kind != SurfaceKind::kSphere;
+      const double weight = a + (s.inward ? 0.0 : all) + (has_axis ? 2.0 * all : 0.0);
       if (weight <= most) continue;
       most = weight;
       point_ = s.point;
@@ -101,7 +113,12 @@ class Turned {
   std::optional<OuterLine> line_of(const Surface& s, const LayerOffsets& offsets) const {
     const double tilt = s.axis.cross(axis_).norm();
     const double off_mm = off_axis(s.point) + tilt * 2.0 * f_.body.solid->bvh().extent_mm;
-    if (s.inward || off_mm > kSameAxis_mm) return std::nullopt;
+    const bool is_ball = s.kind == SurfaceKind::kSphere;
+    if (s.inward || (is_ball ? off_axis(s.point) : off_mm) > kSameAxis_mm) return std::nullopt;
+    if (is_ball) {
+      const double off = off_axis(s.point);
+      return OuterLine{height(s.point), 0.0, {offsets[0] + off, offsets[1] + off}, s.radius_mm};
+    }
     OuterLine line{s.radius_mm, 0.0, {offsets[0] + off_mm, offsets[1] + off_mm}};
     if (s.kind == SurfaceKind::kCylinder) return line;
     line.slope = (s.axis.dot(axis_) > 0.0 ? 1.0 : -1.0) * std::sin(s.half_angle_rad) /
@@ -133,6 +150,10 @@ class Turned {
       if (!line_of_face_[i]) continue;
       levels.push_back(extent[i].lo);
       levels.push_back(extent[i].hi);
+      // On either side of its middle a ball comes in alone.
+      const OuterLine& line = *line_of_face_[i];
+      if (line.is_ball() && extent[i].lo < line.at_zero && line.at_zero < extent[i].hi)
+        levels.push_back(line.at_zero);
     }
     std::sort(levels.begin(), levels.end());
     for (std::size_t i = 0; i + 1 < levels.size(); ++i)
@@ -156,6 +177,7 @@ class Turned {
         slab.line = line;
         slab.faces = {face};
       } else if (std::fabs(line.r(slab.z0) - slab.line->r(slab.z0)) <= f_.same_mm &&
+                 std::fabs(line.r(middle) - slab.line->r(middle)) <= f_.same_mm &&
                  std::fabs(line.r(slab.z1) - slab.line->r(slab.z1)) <= f_.same_mm) {
         slab.line->offsets = larger(slab.line->offsets, line.offsets);
         slab.faces.push_back(face);
@@ -168,7 +190,7 @@ class Turned {
     return line_of_face_[f_.body.face_index(t)].has_value();
   }
 
-  // Of the part of a triangle in a slab: r - line is convex, so it is largest at a corner.
+  // Of the part of a triangle in a slab: what is beyond its line is largest at a corner.
   template <class Visit>
   void for_each_corner_in(const Slab& slab, std::uint32_t t, Visit&& visit) const {
     for (int k = 0; k < 3; ++k) {
@@ -219,7 +241,7 @@ class Turned {
       for_each_corner_in(slab, t, [&](double at, double r) {
         r += bulge_mm;
         slab.rest_r = std::max(slab.rest_r, r);
-        slab.sticks_out |= !slab.line || r > slab.line->r(at) + f_.same_mm + slack(slab);
+        slab.sticks_out |= !slab.line || slab.line->beyond(at, r) > f_.same_mm + slack(slab);
       });
     }
   }
@@ -241,7 +263,7 @@ class Turned {
         const Interval z = heights(t);
         if (z.hi <= slab.z0 + f_.same_mm || z.lo >= slab.z1 - f_.same_mm) continue;
         for_each_corner_in(slab, t, [&](double at, double r) {
-          const double over = r - slab.line->r(at) + f_.reach_mm(t);
+          const double over = slab.line->beyond(at, r) + f_.reach_mm(t);
           for (double& offset : slab.line->offsets) offset = std::max(offset, over);
         });
       }
@@ -254,13 +276,14 @@ class Turned {
       for (int k = 0; k < 3; ++k) {
         const Vec3& x = f_.mesh().corner(t, k);
         const double z = height(x);
-        double r = 0.0, slack_mm = 0.0;
+        double beyond = kInfinity, slack_mm = 0.0;
         for (std::size_t i = 0; i < slabs_.size(); ++i)
           if (slabs_[i].z0 - f_.same_mm <= z && z <= slabs_[i].z1 + f_.same_mm) {
-            r = std::max(r, lines_[i].r(std::clamp(z, slabs_[i].z0, slabs_[i].z1)));
+            beyond = std::min(
+                beyond, lines_[i].beyond(std::clamp(z, slabs_[i].z0, slabs_[i].z1), off_axis(x)));
             slack_mm = std::max(slack_mm, slack(slabs_[i]));
           }
-        if (off_axis(x) > r + 2.0 * f_.same_mm + slack_mm) return false;
+        if (beyond > 2.0 * f_.same_mm + slack_mm) return false;
       }
     return true;
   }
@@ -290,10 +313,18 @@ class Turned {
     const auto steps_down = [&](const OuterLine& line) {
       return std::any_of(borders.begin(), borders.end(), [&](const Border& border) {
         const OuterLine& own = border.line;
-        return border.sign == 0.0 && line.slope == own.slope &&
+        return border.sign == 0.0 && !line.is_ball() && !own.is_ball() && line.slope == own.slope &&
                std::fabs(line.at_zero - own.at_zero) <= f_.same_mm &&
                (line.offsets[0] < own.offsets[0] || line.offsets[1] < own.offsets[1]);
       });
+    };
+    // A ball comes in again behind its middle: slabs from the first to this one must keep within.
+    const auto holds = [&](const OuterLine& ball, std::size_t last) {
+      for (std::size_t i = k;; i += static_cast<std::size_t>(by)) {
+        for (const double z : {slabs_[i].z0, slabs_[i].z1})
+          if (lines_[i].r(z) > ball.r(z) + f_.same_mm) return false;
+        if (i == last) return true;
+      }
     };
     const auto near_end = [&](std::size_t i) { return by > 0 ? slabs_[i].z0 : slabs_[i].z1; };
     const auto far_end = [&](std::size_t i) { return by > 0 ? slabs_[i].z1 : slabs_[i].z0; };
@@ -302,8 +333,10 @@ class Turned {
       const std::size_t next = by > 0 ? i + 1 : i - 1;
       const OuterLine& line = lines_[next];
       if (line.r(near_end(next)) < least(near_end(next)) - f_.same_mm || steps_down(line)) break;
-      if (line.r(far_end(next)) < least(far_end(next)) - f_.same_mm)
+      if (line.r(far_end(next)) < least(far_end(next)) - f_.same_mm) {
+        if (line.is_ball() && !holds(line, i)) break;
         borders.push_back({line, 0.0, 0.0});
+      }
       i = next;
     }
     borders.push_back({{}, far_end(i), static_cast<double>(by)});
@@ -314,25 +347,34 @@ class Turned {
     extend(k, 1, borders);
     extend(k, -1, borders);
     const auto less = [](const Border& a, const Border& b) {
-      return std::tie(a.sign, a.end_z, a.line.at_zero, a.line.slope, a.line.offsets) <
-             std::tie(b.sign, b.end_z, b.line.at_zero, b.line.slope, b.line.offsets);
+      return std::tie(a.sign, a.end_z, a.line.at_zero, a.line.slope, a.line.offsets,
+                      a.line.ball_r) <
+             std::tie(b.sign, b.end_z, b.line.at_zero, b.line.slope, b.line.offsets, b.line.ball_r);
     };
     std::sort(borders.begin(), borders.end(), less);
     if (std::find(known_.begin(), known_.end(), borders) != known_.end()) return;
     known_.push_back(borders);
     for (int layer = 0; layer < 2; ++layer) {
       std::vector<MeridianLine> lines;
+      std::vector<MeridianBall> balls;
       for (const Border& border : borders) {
         if (border.sign != 0.0) {
           const double out = end_offsets(border.end_z, border.sign)[layer];
           lines.push_back({border.sign, 0.0, border.sign * border.end_z + out});
           continue;
         }
+        if (border.line.is_ball()) {
+          const double r = border.line.ball_r + border.line.offsets[layer];
+          balls.push_back({border.line.at_zero, r});
+          lines.push_back({0.0, 1.0, r});  // the lines alone bound it, too
+          continue;
+        }
         const double length = std::sqrt(1.0 + border.line.slope * border.line.slope);
         lines.push_back({-border.line.slope / length, 1.0 / length,
                          border.line.at_zero / length + border.line.offsets[layer]});
       }
-      if (auto cell = round_cell(point_, axis_, lines)) outside.cells[layer].push_back(*cell);
+      if (auto cell = round_cell(point_, axis_, lines, balls))
+        outside.cells[layer].push_back(*cell);
     }
   }
 

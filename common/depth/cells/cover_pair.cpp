@@ -264,7 +264,8 @@ class CoverPair::Whole {
       const Vec3& n = hole.planes[a].n;
       for (std::size_t w = 0; w < hole.walls.size(); ++w) {
         const VoidWall& wall = hole.walls[w];
-        const double along = n.dot(wall.axis), across = (n - along * wall.axis).norm();
+        const double along = n.dot(wall.axis);
+        const double across = wall.is_socket ? 1.0 : (n - along * wall.axis).norm();
         if (!stays(plane_mm[a], wall_mm[w], across + std::fabs(wall.slope * along)) ||
             !stays(wall_mm[w], plane_mm[a], across))
           return false;

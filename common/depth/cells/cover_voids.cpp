@@ -89,7 +89,8 @@ struct Walls {
  private:
   std::size_t wall_of(const Surface* s) {
     if (s == nullptr || !s->inward ||
-        (s->kind != SurfaceKind::kCylinder && s->kind != SurfaceKind::kCone))
+        (s->kind != SurfaceKind::kCylinder && s->kind != SurfaceKind::kCone &&
+         s->kind != SurfaceKind::kSphere))
       return kNone;
     for (std::size_t i = 0; i < surfaces.size(); ++i)
       if (same_wall(*surfaces[i], *s)) return i;
@@ -98,7 +99,7 @@ struct Walls {
   }
 };
 
-// The hole of one wall: along its axis up to what stands in it.
+// The hole of one wall: along its axis up to what stands in it; of a socket all of its ball.
 class Bore {
  public:
   Bore(const CoverFaces& faces, const Balls& balls, const Walls& walls, std::size_t own)
@@ -106,6 +107,7 @@ class Bore {
     wall_.point = s_.point;
     wall_.axis = s_.axis;
     wall_.r_mm = s_.radius_mm;
+    wall_.is_socket = s_.kind == SurfaceKind::kSphere;
     if (s_.kind != SurfaceKind::kCone) return;
     wall_.r_mm = 0.0;
     wall_.cosine = std::cos(s_.half_angle_rad);
@@ -125,7 +127,8 @@ class Bore {
     }
     if (!(free_.lo < free_.hi)) return std::nullopt;
     const double lo = std::max(from, free_.lo), hi = std::min(own_.hi, free_.hi);
-    if (!(lo < hi) || !is_outside(f_, s_.point + 0.5 * (lo + hi) * s_.axis)) return std::nullopt;
+    const double middle = wall_.is_socket ? 0.0 : 0.5 * (lo + hi);
+    if (!(lo < hi) || !is_outside(f_, s_.point + middle * s_.axis)) return std::nullopt;
     LayerVoids voids;
     for (int layer = 0; layer < 2; ++layer) {
       Void& v = voids.of[layer];
@@ -163,6 +166,7 @@ class Bore {
   }
   double ball_clearance(const Ball& ball) const {
     const Vec3 d = ball.middle - s_.point;
+    if (wall_.is_socket) return d.norm() - wall_.r_mm - ball.radius_mm;
     const double z = d.dot(s_.axis);
     return wall_.cosine * ((d - z * s_.axis).norm() - wall_.r_mm - wall_.slope * z) -
            ball.radius_mm;
@@ -176,6 +180,8 @@ class Bore {
 
   // For a cylinder the distance of the axis from the triangle seen along it.
   double least_clearance(const Corners& c) const {
+    if (wall_.is_socket)
+      return (nearest_on_triangle(s_.point, c[0], c[1], c[2]) - s_.point).norm() - wall_.r_mm;
     if (s_.kind == SurfaceKind::kCone) return refined(c, kWallHalvings);
     Corners flat;
     for (int k = 0; k < 3; ++k) flat[k] = c[k] - height(c[k]) * s_.axis;
@@ -202,7 +208,7 @@ class Bore {
         for (double& offset : offsets_) offset = std::max(offset, f_.reach_mm(t) - clear);
       return true;
     }
-    return limit(c, allowed, kWallHalvings);
+    return !wall_.is_socket && limit(c, allowed, kWallHalvings);
   }
 
   bool limit(const Corners& c, double allowed, int depth) {

@@ -12,6 +12,7 @@
 #include "common/depth/search/search.h"
 #include "common/math/rotation.h"
 #include "tests/support/effort.h"
+#include "tests/unit/depth/ball_parts.h"
 #include "tests/unit/depth/drawn_pairs.h"
 #include "tests/unit/depth/profile_parts.h"
 
@@ -158,6 +159,30 @@ TEST(Cover, PlantedFaultsAreSeen) {
   EXPECT_GT(teeth.below, 0);
 }
 
+TEST(Cover, NoBoundOfABallIsBelowAPointInBoth) {
+  const Tally tally = judge_poses(
+      7011, test::effort(300), [](CoverLayer&) {}, ball_pair);
+  std::printf("%d poses: %d overlap, %d proven apart, %d within 5 um\n", tally.poses, tally.overlap,
+              tally.apart, tally.tight);
+  EXPECT_EQ(tally.below, 0);
+  EXPECT_EQ(tally.differ, 0);
+  EXPECT_GT(tally.overlap, test::effort(150));
+  EXPECT_GT(tally.apart, test::effort(150));
+}
+
+TEST(Cover, PlantedFaultsOfABallAreSeen) {
+  const auto small_ball = [](CoverLayer& layer) {
+    for (ConvexCell& cell : layer.cells)
+      for (ConvexCell::Zone& zone : cell.zones) zone.r_mm -= 0.02;
+  };
+  const auto wide_socket = [](CoverLayer& layer) {
+    for (Void& v : layer.voids)
+      for (VoidWall& wall : v.walls) wall.r_mm += wall.is_socket ? 0.02 : 0.0;
+  };
+  EXPECT_GT(judge_poses(7012, 200, small_ball, ball_pair).below, 0);
+  EXPECT_GT(judge_poses(7013, 200, wide_socket, ball_pair).below, 0);
+}
+
 // A shaft with flats, or with round corners, nearly in the middle of its hole; the shaft also
 // rests in a bore, and any part in such a hole.
 DrawnPair profile_pair(Random& random) {
@@ -246,20 +271,24 @@ SweptQuery any_sweep(Random& random, const DrawnPair& pair) {
   return query;
 }
 
-TEST(Cover, NothingIsInBothBeforeTheTimeThatIsProvenFree) {
-  Random random(7004);
+struct Times {
   int free = 0, later = 0, never = 0;
-  for (int i = 0; i < test::effort(400); ++i) {
-    const DrawnPair pair = any_pair(random);
+};
+
+Times judge_times(std::uint64_t seed, int count, DrawnPair (*draw)(Random&)) {
+  Random random(seed);
+  Times times;
+  for (int i = 0; i < count; ++i) {
+    const DrawnPair pair = draw(random);
     const SweptQuery query = any_sweep(random, pair);
     const PairPath path(query.motion_a, *pair.a.solid, query.motion_b, *pair.b.solid);
     for (const bool largest : {false, true}) {
       const CoverPair cells(layer_of(pair.a, largest), layer_of(pair.b, largest));
       const CoverFree proven = cells.free_until(path, kNothing_mm, 2.5e-5);
       const double end = proven.all ? 1.0 : proven.t_free;
-      free += proven.all;
-      later += !proven.all && end > 0.0;
-      never += end <= 0.0;
+      times.free += proven.all;
+      times.later += !proven.all && end > 0.0;
+      times.never += end <= 0.0;
       for (int k = 0; k < 4; ++k) {
         const double t = end * (k == 0 ? 1.0 : uniform(random, 0.0, 1.0));
         if (!proven.all && end <= 0.0) break;
@@ -269,9 +298,17 @@ TEST(Cover, NothingIsInBothBeforeTheTimeThatIsProvenFree) {
       }
     }
   }
-  std::printf("%d free, %d later, %d not at all\n", free, later, never);
-  EXPECT_GT(free, test::effort(134));
-  EXPECT_GT(later, test::effort(80));
+  std::printf("%d free, %d later, %d not at all\n", times.free, times.later, times.never);
+  return times;
+}
+
+TEST(Cover, NothingIsInBothBeforeTheTimeThatIsProvenFree) {
+  const Times any = judge_times(7004, test::effort(400), any_pair);
+  EXPECT_GT(any.free, test::effort(134));
+  EXPECT_GT(any.later, test::effort(80));
+  const Times of_balls = judge_times(7014, test::effort(150), ball_pair);
+  EXPECT_GT(of_balls.free, test::effort(50));
+  EXPECT_GT(of_balls.later, test::effort(30));
 }
 
 // With covers and without them: the search may know less of what is free, never the opposite.

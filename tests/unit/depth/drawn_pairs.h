@@ -24,11 +24,8 @@ inline double gap_mm(const DrawnPair& pair, const Pose& X_BA) {
 }
 
 /// A round somewhere along a bore of about its size, or any turn, moved up to the other part.
-inline DrawnPair any_pair(Random& random) {
-  DrawnPair pair;
-  const double r = uniform(random, 3.0, 12.0);
-  pair.a = any_part(random, r);
-  pair.b = any_part(random, r + uniform(random, -0.05, 0.1));
+inline DrawnPair placed(Random& random, const DrawnPart& a, const DrawnPart& b) {
+  DrawnPair pair{a, b, Pose()};
   const bool fits = pair.a.round_mm > 0.0 && pair.b.round_mm > 0.0 && below(random, 3) != 0;
   if (fits) {
     const Vec3 turn = below(random, 2) * uniform(random, 0.0, 2e-3) * any_direction(random) +
@@ -58,6 +55,12 @@ inline DrawnPair any_pair(Random& random) {
   }
   pair.X_BA.p = (out + uniform(random, -0.08, 0.15)) * from;
   return pair;
+}
+
+inline DrawnPair any_pair(Random& random) {
+  const double r = uniform(random, 3.0, 12.0);
+  const DrawnPart a = any_part(random, r);
+  return placed(random, a, any_part(random, r + uniform(random, -0.05, 0.1)));
 }
 
 }  // namespace mortise::cover_parts
