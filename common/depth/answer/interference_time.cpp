@@ -11,7 +11,6 @@
 #include "common/depth/cells/cover_pair.h"
 #include "common/depth/pair_path.h"
 #include "common/depth/search/candidates.h"
-#include "common/depth/search/exclusion.h"
 #include "common/depth/search/search.h"
 
 namespace mortise {
@@ -24,10 +23,6 @@ constexpr double kSmallestShare = 0.25;
 
 // Paths longer than this many widths are cut in time without asking.
 constexpr double kLongPath = 4.0;
-
-// After the time at which a closed form stops excluding an overlap, so many of the briefest
-// intervals are looked at. An overlap that is certain by then counts as certain from that time on.
-constexpr double kSoon = 256.0;
 
 // After so many evaluations, and again whenever they have doubled, the search looks this many times
 // the accuracy of the path ahead whether the parts interfere: a part that the last tick stopped
@@ -67,51 +62,6 @@ bool later(const SpanItem& a, const SpanItem& b) {
   if (a.span.t0 != b.span.t0) return a.span.t0 > b.span.t0;
   return a.order > b.order;
 }
-
-// What no cover follows closely: other round faces keep apart by theirs.
-bool is_ball_in_socket(const Surface& a, const Surface& b) {
-  return a.kind == SurfaceKind::kSphere && b.kind == SurfaceKind::kSphere && a.inward != b.inward;
-}
-
-// A ball and its socket: how far they overlap in the layer.
-class SocketBounds {
- public:
-  SocketBounds(const Body (&bodies)[2], Layer layer, std::array<std::uint16_t, 2> faces,
-               const Surface& sa, const Surface& sb, const PairPath& path, double touch_mm)
-      : sa_(sa),
-        sb_(sb),
-        ea_(extent_of(bodies[0], faces[0], sa)),
-        eb_(extent_of(bodies[1], faces[1], sb)),
-        path_(path),
-        touch_mm_(touch_mm) {
-    for (int i = 0; i < 2; ++i)
-      offsets_mm += Body::offset_of(bodies[i].band->faces[faces[i]], layer);
-  }
-
-  /// Upper bound at t of everything that is near at any time of the span.
-  double overlap_mm(const Span& span, double t) const {
-    const double margin_mm = path_.speed_upper_bound() * (span.t1 - span.t0) + touch_mm_;
-    const auto overlap = face_pair_overlap(sa_, ea_, sb_, eb_, path_.pose(0, t), margin_mm);
-    return overlap ? overlap->near_hi_mm + offsets_mm : kInfinity;
-  }
-  std::optional<FacePairOverlap> overlap_at(double t) const {
-    return face_pair_overlap(sa_, ea_, sb_, eb_, path_.pose(0, t), touch_mm_);
-  }
-
-  // All of the ball, and the socket between its ends.
-  void set_where_it_holds(KnownOverlaps::Row& row) const {
-    const FaceExtent& socket = sa_.inward ? ea_ : eb_;
-    row.holds_along_mm[sa_.inward ? 0 : 1] = {socket.lo_mm - touch_mm_, socket.hi_mm + touch_mm_};
-  }
-
-  double offsets_mm = 0.0;  ///< of both layers from the declared surfaces
-
- private:
-  const Surface &sa_, &sb_;
-  const FaceExtent ea_, eb_;
-  const PairPath& path_;
-  double touch_mm_;
-};
 
 // A region in which the surfaces of the layer interfere; null: there is none.
 const OverlapRegion* interfering_region(const OverlapResult& result, Layer layer) {
@@ -170,7 +120,6 @@ class InterferenceSearch {
     const PairFrame start(at_);
     rounding_mm_ = start.rounding_mm;
     touch_mm_ = start.touch_mm;
-    find_known();
     add_roots(start);
     std::make_heap(heap_.begin(), heap_.end(), later);
     std::uint64_t next_look = answer_.evaluations + kFirstLook;
@@ -205,67 +154,6 @@ class InterferenceSearch {
   }
 
  private:
-  // Balls in sockets. The distance of their centres is a convex function of the displacement, so
-  // that over an interval it is largest at an end, up to the path's own curvature. Until the first
-  // time that this does not exclude, the pair needs no search; that time ends the search when the
-  // pair is really certain there.
-  void find_known() {
-    if (trivial_) return;
-    const auto count_a = static_cast<std::uint16_t>(bodies_[0].band->faces.size());
-    const auto count_b = static_cast<std::uint16_t>(bodies_[1].band->faces.size());
-    for (std::uint16_t i = 0; i < count_a; ++i)
-      for (std::uint16_t j = 0; j < count_b; ++j) {
-        const Surface* sa = Body::surface_of(bodies_[0].band->faces[i], layer_);
-        const Surface* sb = Body::surface_of(bodies_[1].band->faces[j], layer_);
-        if (sa != nullptr && sb != nullptr && is_ball_in_socket(*sa, *sb))
-          add_known({i, j}, *sa, *sb);
-      }
-  }
-
-  void add_known(std::array<std::uint16_t, 2> faces, const Surface& sa, const Surface& sb) {
-    const SocketBounds bounds(bodies_, layer_, faces, sa, sb, path_, touch_mm_);
-    const double offsets = bounds.offsets_mm;
-    KnownOverlaps::Row row{{faces[0], faces[1]}, 0.0};
-    bounds.set_where_it_holds(row);
-    Exclusion excluded{path_, touch_mm_, moment()};
-    const Span first =
-        excluded.first([&](const Span& span, double t) { return bounds.overlap_mm(span, t); });
-    row.overlap_mm = excluded.most_mm - offsets;
-    answer_.evaluations += excluded.work() + Exclusion::kWork;
-    // Only where the faces do meet is it worth while to ask whether the overlap is certain.
-    const auto meet_at = [&](double t) {
-      KnownFacePair pair;
-      const auto overlap = bounds.overlap_at(t);
-      if (!overlap || overlap->lo_mm + offsets <= -query_.accuracy_mm) return false;
-      pair.overlap = *overlap;
-      std::copy(faces.begin(), faces.end(), pair.face);
-      at_.X_WA = path_.motions[0].pose_at(t);
-      at_.X_WB = path_.motions[1].pose_at(t);
-      return is_tight(PairFrame(at_), pair);
-    };
-    if (first.t0 >= 1.0 || ends_at(first, meet_at)) known_.rows.push_back(row);
-  }
-
-  // The time in which no point goes farther than a share of the accuracy.
-  double moment() const {
-    return kSmallestShare * query_.accuracy_mm / std::max(path_.speed_upper_bound(), 1e-300);
-  }
-
-  // Is the overlap certain soon after the interval? Then the search ends there. Later: no later.
-  template <class MeetAt>
-  bool ends_at(const Span& span, const MeetAt& meet_at) {
-    double step = std::max(1e-12, moment());
-    for (double t = span.t0 <= 0.0 ? 0.0 : span.t1; t <= 1.0; t = span.t0 + step, step *= 2.0) {
-      if (!meet_at(t)) continue;
-      if (!is_real_at(t, query_.at_target.work_cap)) return false;
-      t_real_ = std::min(t_real_, t);
-      if (t - span.t0 > kSoon * moment()) return false;
-      free_until_ = std::min(free_until_, span.t0);
-      return true;
-    }
-    return false;
-  }
-
   // Everything before t is proven free. Is it real when no point has gone farther than path_mm from
   // there? A part that rests against another and is pushed on is real at once: then nothing is
   // gained by parting the surfaces that touch.
@@ -293,19 +181,12 @@ class InterferenceSearch {
 
   // Triangles that the path may bring near the other part, and shells that start inside it.
   void add_roots(const PairFrame& start) {
-    KnownOverlaps never;
-    for (const KnownOverlaps::Row& row : known_.rows) {
-      double most = row.overlap_mm;
-      for (int i = 0; i < 2; ++i)
-        most += Body::offset_of(bodies_[i].band->faces[row.face[i]], layer_);
-      if (most <= touch_mm_) never.rows.push_back(row);
-    }
     CandidateQuery query;
     query.pair = &start;
     query.margin_mm = path_.speed_upper_bound();
     for (const Body& body : bodies_)
       query.margin_mm += body.largest_offset_mm[static_cast<int>(layer_)];
-    query.skip = &never;
+    query.closed_forms = false;
     const Candidates candidates = find_candidate_triangles(query);
     for (int role = 0; role < 2; ++role)
       if (bodies_[1 - role].has_inside)
@@ -358,7 +239,6 @@ class InterferenceSearch {
     DepthProof proof;
     proof.k = &bodies_[1 - item.role];
     proof.layer = layer_;
-    proof.known = trivial_ ? nullptr : &known_;
     proof.role = item.role;
     proof.s = &bodies_[item.role];
     proof.triangle_s = item.piece.triangle;
@@ -439,7 +319,6 @@ class InterferenceSearch {
   bool trivial_ = true;
   Layer layer_ = Layer::kMesh;
   double rounding_mm_ = 0.0, touch_mm_ = 0.0;
-  KnownOverlaps known_;
   SearchScratch scratch_;
   std::vector<SpanItem> heap_;
   std::uint64_t order_ = 0;

@@ -188,6 +188,11 @@ void cap_certain(const PairFrame& pair, const Bracket& certain, OverlapRegion& r
   region.certain_mm.lo = std::min(region.certain_mm.lo, most_mm);
 }
 
+// A face may be asked beyond its edge: without a point that was checked nothing is certain.
+void keep_to_witness(OverlapRegion& region) {
+  if (!region.has_witness) region.certain_mm.lo = std::min(region.certain_mm.lo, 0.0);
+}
+
 // Where meshes touch in many places, the search of what may overlap there stays open; by their
 // planes it is told.
 void settle_touch(const OverlapQuery& query, const PairFrame& pair, OverlapResult& result) {
@@ -265,6 +270,7 @@ class Overlap {
       tell_inner_overlap(pair_, query_,
                          {.layers = planes_->has_brackets(), .closed_form_mm = closed_form_mm_},
                          result_.regions.front(), result_.evaluations);
+    for (OverlapRegion& region : result_.regions) keep_to_witness(region);
     return std::move(result_);
   }
 

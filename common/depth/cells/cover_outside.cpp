@@ -366,7 +366,7 @@ class Turned {
         if (border.line.is_ball()) {
           const double r = border.line.ball_r + border.line.offsets[layer];
           balls.push_back({border.line.at_zero, r});
-          lines.push_back({0.0, 1.0, r});  // the lines alone bound it, too
+          lines.push_back({0.0, 1.0, 2.0 * r});  // the lines alone bound it, too
           continue;
         }
         const double length = std::sqrt(1.0 + border.line.slope * border.line.slope);

@@ -142,6 +142,11 @@ class Bore {
 
  private:
   double height(const Vec3& x) const { return (x - s_.point).dot(s_.axis); }
+  Interval heights(const Corners& c) const {
+    Interval z{kInfinity, -kInfinity};
+    for (const Vec3& x : c) z = hull(z, {height(x), height(x)});
+    return z;
+  }
   bool is_own(std::uint32_t t) const { return walls_.of_face[f_.body.face_index(t)] == own_wall_; }
   void find_own() {
     own_point_.assign(f_.mesh().points_mm.size(), false);
@@ -178,18 +183,25 @@ class Bore {
             Corners{ab, bc, ca}};
   }
 
-  // For a cylinder the distance of the axis from the triangle seen along it.
+  // The same by the distance of the axis from the triangle seen along it, and its height nearest to
+  // the wall: exact beside a cylinder, and of a triangle at one height.
+  double flat_clearance(const Corners& c) const {
+    Corners flat;
+    for (int k = 0; k < 3; ++k) flat[k] = c[k] - height(c[k]) * s_.axis;
+    const Interval z = heights(c);
+    const double off = (nearest_on_triangle(s_.point, flat[0], flat[1], flat[2]) - s_.point).norm();
+    return wall_.cosine * (off - wall_.r_mm - std::max(wall_.slope * z.lo, wall_.slope * z.hi));
+  }
+
   double least_clearance(const Corners& c) const {
     if (wall_.is_socket)
       return (nearest_on_triangle(s_.point, c[0], c[1], c[2]) - s_.point).norm() - wall_.r_mm;
-    if (s_.kind == SurfaceKind::kCone) return refined(c, kWallHalvings);
-    Corners flat;
-    for (int k = 0; k < 3; ++k) flat[k] = c[k] - height(c[k]) * s_.axis;
-    return (nearest_on_triangle(s_.point, flat[0], flat[1], flat[2]) - s_.point).norm() -
-           wall_.r_mm;
+    if (s_.kind != SurfaceKind::kCone) return flat_clearance(c);
+    const Interval z = heights(c);
+    return z.hi - z.lo <= f_.same_mm ? flat_clearance(c) : refined(c, kWallHalvings);
   }
   double refined(const Corners& c, int depth) const {
-    const double bound = clearance(c);
+    const double bound = std::max(clearance(c), flat_clearance(c));
     if (depth == 0 || bound >= f_.travel_mm) return bound;
     double least = kInfinity;
     for (const Corners& q : quarters(c)) least = std::min(least, refined(q, depth - 1));
@@ -212,8 +224,7 @@ class Bore {
   }
 
   bool limit(const Corners& c, double allowed, int depth) {
-    Interval z{kInfinity, -kInfinity};
-    for (const Vec3& x : c) z = hull(z, {height(x), height(x)});
+    const Interval z = heights(c);
     if (z.lo >= own_.hi - f_.same_mm) {
       free_.hi = std::min(free_.hi, z.lo);
       return true;
@@ -222,7 +233,7 @@ class Bore {
       free_.lo = std::max(free_.lo, z.hi);
       return true;
     }
-    if (clearance(c) >= -allowed) return true;
+    if (std::max(clearance(c), flat_clearance(c)) >= -allowed) return true;
     if (depth == 0) return false;
     for (const Corners& q : quarters(c))
       if (!limit(q, allowed, depth - 1)) return false;

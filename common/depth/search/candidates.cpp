@@ -17,6 +17,9 @@ constexpr double kShallowShare = 0.05;
 
 constexpr std::int32_t kMixed = Body::kMixed;
 
+// Is the closed form narrow, and reached on both faces, not only on their surfaces continued?
+bool is_tight(const PairFrame& frame, const KnownFacePair& pair);
+
 enum class Mark : std::uint8_t { kNone = 0, kNear, kCrossing };
 
 // The marks of all triangles of a part. Only pages with a mark are there: a look at two parts of a
@@ -52,7 +55,7 @@ class Finder {
       : query_(query), pair_(*query.pair), R_(pair_.X_KS[0].rotation()), R_abs_(R_.cwiseAbs()) {
     for (int i = 0; i < 2; ++i) {
       marked_[i].begin(pair_.bodies[i].mesh->triangles.size());
-      if (!pair_.trivial && has_surfaces(pair_.bodies[i]))
+      if (query_.closed_forms && !pair_.trivial && has_surfaces(pair_.bodies[i]))
         faces_[i] = &pair_.bodies[i].face_of_child();
     }
   }
@@ -64,9 +67,7 @@ class Finder {
     for (std::vector<std::uint32_t>& triangles : found_.triangles)
       std::sort(triangles.begin(), triangles.end());
     for (auto& [faces, slot] : known_) {
-      if (query_.skip != nullptr || !slot.known ||
-          (slot.nodes[0].empty() && slot.triangles[0].empty()))
-        continue;
+      if (!slot.known || (slot.nodes[0].empty() && slot.triangles[0].empty())) continue;
       for (int i = 0; i < 2; ++i) {
         slot.known->triangles[i] = std::move(slot.triangles[i]);
         collect(i, slot.nodes[i], slot.known->triangles[i]);
@@ -131,8 +132,7 @@ class Finder {
     if (face_a == kMixed || face_b == kMixed || !faces_[0] || !faces_[1]) return nullptr;
     const auto [at, fresh] = known_.try_emplace({face_a, face_b});
     Slot& slot = at->second;
-    if (fresh)
-      slot.known = query_.skip != nullptr ? skipped(face_a, face_b) : closed_form(face_a, face_b);
+    if (fresh) slot.known = closed_form(face_a, face_b);
     return slot.known ? &slot : nullptr;
   }
 
@@ -142,12 +142,6 @@ class Finder {
     slot->nodes[0].push_back(a.child);
     slot->nodes[1].push_back(b.child);
     return true;
-  }
-
-  std::optional<KnownFacePair> skipped(std::int32_t face_a, std::int32_t face_b) const {
-    for (const KnownOverlaps::Row& row : query_.skip->rows)
-      if (row.face[0] == face_a && row.face[1] == face_b) return KnownFacePair{};
-    return std::nullopt;
   }
 
   std::optional<KnownFacePair> closed_form(std::int32_t face_a, std::int32_t face_b) {
@@ -320,8 +314,6 @@ bool is_reached(const PairFrame& frame, const KnownFacePair& pair) {
   return false;
 }
 
-}  // namespace
-
 bool is_tight(const PairFrame& frame, const KnownFacePair& pair) {
   for (const Interval& of_layer : pair.overlap.of_layer_mm)
     if (!(of_layer.hi - of_layer.lo <= kDepthAccuracyDefault_mm)) return false;
@@ -341,6 +333,8 @@ bool is_tight(const PairFrame& frame, const KnownFacePair& pair) {
   };
   return on_face(0, frame.X_KS[1] * pair.overlap.point_B) && on_face(1, pair.overlap.point_B);
 }
+
+}  // namespace
 
 InBoreBound in_bore_bound(const PairFrame& pair, std::uint16_t face_a, std::uint16_t face_b,
                           double margin_mm) {

@@ -37,12 +37,9 @@ struct CandidateQuery {
   /// Where the meshes are the parts: name the triangles that go through each other, leave out those
   /// that do not meet.
   bool want_meetings = false;
-  /// Set: just these pairs of faces are not descended into, and no closed form is formed.
-  const KnownOverlaps* skip = nullptr;
+  /// False: all pairs of faces are descended into.
+  bool closed_forms = true;
 };
-
-/// Is the closed form narrow, and reached on both faces, not only on their surfaces continued?
-bool is_tight(const PairFrame& frame, const KnownFacePair& pair);
 
 /// Bound of a round face in a bore over all layers; infinity for other pairs.
 InBoreBound in_bore_bound(const PairFrame& pair, std::uint16_t face_a, std::uint16_t face_b,
