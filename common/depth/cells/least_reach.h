@@ -48,7 +48,7 @@ class LeastReach {
   bool see_from(const Vec3& p) {
     Simplex<PointOfEach> simplex;
     simplex.add(best_.across() - p, best_);
-    Vec3 v = simplex.point[0];
+    Vec3 v = simplex.nearest();
     double away = v.norm();
     for (int i = 0; i < kSteps; ++i) {
       if (!(away > kNowhere * size_mm_)) return false;

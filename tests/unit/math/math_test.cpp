@@ -1,12 +1,15 @@
 #include <gtest/gtest.h>
 
+#include <Eigen/QR>
 #include <cmath>
 #include <random>
+#include <vector>
 
 #include "common/math/box.h"
 #include "common/math/interval.h"
 #include "common/math/pose.h"
 #include "common/math/rotation.h"
+#include "common/math/simplex.h"
 #include "tests/support/numbers.h"
 
 namespace mortise {
@@ -99,6 +102,51 @@ TEST(Box, EmptyGrowsAndOverlaps) {
   other.lo = other.hi = Vec3(1.1, 0, 0);
   EXPECT_FALSE(box.overlaps(other));
   EXPECT_TRUE(box.grown(0.1).overlaps(other));
+}
+
+// The point of the hull of some points that is nearest to the origin: of each set of them the foot
+// on what it spans, by least squares, where that lies between them.
+Vec3 nearest_of_sets(const std::vector<Vec3>& points) {
+  Vec3 best = points.front();
+  for (unsigned set = 1; set < (1U << points.size()); ++set) {
+    std::vector<Vec3> p;
+    for (std::size_t k = 0; k < points.size(); ++k)
+      if (set >> k & 1U) p.push_back(points[k]);
+    Eigen::Matrix<double, 3, Eigen::Dynamic> edges(3, p.size() - 1);
+    for (std::size_t k = 1; k < p.size(); ++k)
+      edges.col(static_cast<Eigen::Index>(k) - 1) = p[k] - p[0];
+    const Eigen::VectorXd share =
+        p.size() > 1 ? edges.colPivHouseholderQr().solve(-p[0]).eval() : Eigen::VectorXd();
+    if (share.size() > 0 && (share.minCoeff() < 0.0 || share.sum() > 1.0)) continue;
+    const Vec3 foot = share.size() > 0 ? Vec3(p[0] + edges * share) : p[0];
+    if (foot.norm() < best.norm()) best = foot;
+  }
+  return best;
+}
+
+TEST(Simplex, GoesOnFromThePointThatWasNearest) {
+  std::mt19937_64 random(7);
+  int inside = 0, carried_again = 0;
+  for (int i = 0; i < 4000; ++i) {
+    Simplex<int> simplex;
+    const Vec3 off = random_vector(random, 1.0);
+    Vec3 before = Vec3::Constant(kInfinity);
+    for (int tag = 0; tag < 12 && simplex.count < 4; ++tag) {
+      std::vector<Vec3> points(simplex.point, simplex.point + simplex.count);
+      points.push_back(off + random_vector(random, 2.0));
+      simplex.add(points.back(), tag);
+      const Vec3 nearest = simplex.nearest();
+      EXPECT_NEAR(nearest.norm(), nearest_of_sets(points).norm(), 1e-12);
+      Vec3 sum = Vec3::Zero();
+      for (int k = 0; k < simplex.count; ++k) sum += simplex.weight[k] * simplex.point[k];
+      EXPECT_LT((sum - nearest).norm(), 1e-12);
+      carried_again += nearest == before ? 1 : 0;
+      before = nearest;
+    }
+    inside += simplex.count == 4 ? 1 : 0;
+  }
+  EXPECT_GT(inside, 1000);
+  EXPECT_GT(carried_again, 1000);
 }
 
 }  // namespace
