@@ -31,7 +31,7 @@ Vec3 Arc::farthest(const Vec3& d, const Vec3& otherwise) const {
 double ConvexCell::support_mm(const Vec3& n) const {
   double most = -kInfinity;
   if (!round) {
-    for (const Vec3& x : corners) most = std::max(most, n.dot(x));
+    most = corners.farthest(n).reach_mm;
     for (const ConvexCell& piece : pieces) most = std::max(most, piece.support_mm(n));
     return most;
   }
@@ -59,7 +59,7 @@ double ConvexCell::farthest_from_mm(const Vec3& x, Vec3& at) const {
     at = of;
   };
   if (!round) {
-    for (const Vec3& corner : corners) take(corner, (corner - x).norm());
+    for (std::size_t i = 0; i < corners.size(); ++i) take(corners[i], (corners[i] - x).norm());
     for (const ConvexCell& piece : pieces) {
       Vec3 of = Vec3::Zero();
       const double far = piece.farthest_from_mm(x, of);
@@ -88,13 +88,9 @@ double ConvexCell::farthest_from_mm(const Vec3& x, Vec3& at) const {
 Vec3 ConvexCell::farthest(const Vec3& n) const {
   double most = -kInfinity;
   if (!round) {
-    const Vec3* at = &middle;
-    for (const Vec3& x : corners)
-      if (const double s = n.dot(x); s > most) {
-        most = s;
-        at = &x;
-      }
-    Vec3 farthest_at = *at;
+    const HullCorners::Farthest corner = corners.farthest(n);
+    most = corner.reach_mm;
+    Vec3 farthest_at = corners.size() > 0 ? corners[corner.index] : middle;
     for (const ConvexCell& piece : pieces)
       if (const Vec3 x = piece.farthest(n); n.dot(x) > most) {
         most = n.dot(x);
@@ -105,19 +101,16 @@ Vec3 ConvexCell::farthest(const Vec3& n) const {
   const double along = n.dot(axis);
   const Vec3 across_axis = n - along * axis;
   const double off = arc.most(across_axis);
-  const Vec3 u = arc.farthest(across_axis, across[0]);
-  Vec3 at = middle;
+  const Circle* far = nullptr;
   for (const Circle& circle : circles)
     if (const double s = along * circle.z_mm + off * circle.r_mm; s > most) {
       most = s;
-      at = point + circle.z_mm * axis + circle.r_mm * u;
+      far = &circle;
     }
   for (const Zone& zone : zones)
-    if (const auto x = on_zone(zone, n); x && n.dot(*x - point) > most) {
-      most = n.dot(*x - point);
-      at = *x;
-    }
-  return at;
+    if (const auto x = on_zone(zone, n); x && n.dot(*x - point) > most) return *x;
+  if (far == nullptr) return middle;
+  return point + far->z_mm * axis + far->r_mm * arc.farthest(across_axis, across[0]);
 }
 
 std::vector<Vec3> ConvexCell::around_farthest(const Vec3& n, double slack_mm) const {
@@ -127,7 +120,7 @@ std::vector<Vec3> ConvexCell::around_farthest(const Vec3& n, double slack_mm) co
     if (n.dot(x) >= least) around.push_back(x);
   };
   if (!round) {
-    for (const Vec3& x : corners) add(x);
+    for (std::size_t i = 0; i < corners.size(); ++i) add(corners[i]);
     for (const ConvexCell& piece : pieces) add(piece.farthest(n));
     return around;
   }
@@ -362,8 +355,8 @@ std::optional<ConvexCell> polytope_cell(std::span<const HalfSpace> planes) {
   const auto add = [&](const Vec3& x) {
     for (const HalfSpace& plane : planes)
       if (plane.n.dot(x) > plane.c_mm + same) return;
-    for (const Vec3& known : cell.corners)
-      if ((known - x).norm() <= same) return;
+    for (std::size_t i = 0; i < cell.corners.size(); ++i)
+      if ((cell.corners[i] - x).norm() <= same) return;
     cell.corners.push_back(x);
     planes_of.emplace_back();
     for (std::uint16_t p = 0; p < count; ++p)
@@ -392,7 +385,7 @@ std::optional<ConvexCell> polytope_cell(std::span<const HalfSpace> planes) {
   std::vector<Vec3> normals;
   for (const HalfSpace& plane : planes) normals.push_back(plane.n);
   cell.set_faces(normals);
-  for (const Vec3& x : cell.corners) cell.middle += x / static_cast<double>(cell.corners.size());
+  cell.middle = cell.corners.middle();
   return cell;
 }
 
@@ -414,7 +407,7 @@ std::optional<ConvexCell> prism_cell(const std::array<Vec3, 3>& frame,
     normals.push_back(flat(outline::outward(polygon[i], polygon[next])));
   }
   cell.set_faces(normals);
-  for (const Vec3& x : cell.corners) cell.middle += x / static_cast<double>(cell.corners.size());
+  cell.middle = cell.corners.middle();
   return cell;
 }
 

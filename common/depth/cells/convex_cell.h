@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "common/depth/cells/hull_corners.h"
 #include "common/math/interval.h"
 #include "common/math/types.h"
 
@@ -55,7 +56,7 @@ struct ConvexCell {
 
   Arc arc;  ///< round, not whole: the body is the hull of these points of the circles
 
-  std::vector<Vec3> corners;  ///< polytope: the body is their hull, and that of `pieces`
+  HullCorners corners;  ///< polytope: the body is their hull, and that of `pieces`
   /// Its edges, by corner. There may be more, none is missing.
   std::vector<std::array<std::uint16_t, 2>> edges;
   /// Of a prism with round sides along `axis`, of one length. Its edges along the axis are named.

@@ -261,7 +261,7 @@ class Profile {
   }
 
   std::vector<Vec3> around(const ConvexCell& cell) const {
-    std::vector<Vec3> points = cell.corners;
+    std::vector<Vec3> points = cell.corners.all();
     for (const ConvexCell& piece : cell.pieces)
       for (const Vec3& u : directions(piece.arc, axis_, kAreaPoints))
         points.push_back(piece.point + piece.circles[0].r_mm * u);

@@ -148,7 +148,10 @@ TEST(Cover, PlantedFaultsAreSeen) {
   const Tally shafts = judge_poses(7003, 250, [](CoverLayer& layer) {
     for (ConvexCell& cell : layer.cells) {
       for (auto& circle : cell.circles) circle.r_mm -= 0.02;
-      for (Vec3& corner : cell.corners) corner += 0.02 * (cell.middle - corner).normalized();
+      HullCorners smaller;
+      for (const Vec3& corner : cell.corners.all())
+        smaller.push_back(corner + 0.02 * (cell.middle - corner).normalized());
+      cell.corners = smaller;
     }
   });
   EXPECT_GT(shafts.below, 0);

@@ -43,14 +43,14 @@ TEST(InnerPieces, LieWithinTheirPart) {
       for (int k = 0; k < 60; ++k) {
         Vec3 in = Vec3::Zero();
         double sum = 0.0;
-        for (const Vec3& corner : piece->corners) {
+        for (const Vec3& corner : piece->corners.all()) {
           const double weight = -std::log(unit(random) + 1e-12) * (k % 2 == 0 ? 1.0 : unit(random));
           in += weight * corner;
           sum += weight;
         }
         EXPECT_LT(signed_distance_mm(*part, in / sum), 1e-12);
       }
-      for (const Vec3& corner : piece->corners) EXPECT_LT(signed_distance_mm(*part, corner), 1e-9);
+      for (const Vec3& corner : piece->corners.all()) EXPECT_LT(signed_distance_mm(*part, corner), 1e-9);
     }
   EXPECT_GT(pieces, 5 * test::effort(60) / 4);
 }

@@ -153,5 +153,30 @@ TEST(LeastReach, NamesWhereBothTouch) {
   }
 }
 
+// Bit for bit, and of those that are as far the first.
+TEST(HullCorners, TheFarthestIsThatOfALoop) {
+  Random random(11);
+  int ties = 0;
+  EXPECT_EQ(HullCorners().farthest(Vec3::UnitX()).reach_mm, -kInfinity);
+  for (int i = 0; i < 20'000; ++i) {
+    HullCorners corners;
+    const bool coarse = i % 2 == 0;
+    for (std::size_t count = 1 + random() % 60; count > 0; --count) {
+      const Vec3 x = 20.0 * any_direction(random);
+      corners.push_back(coarse ? Vec3(x.array().round()) : x);
+    }
+    const Vec3 n = coarse ? Vec3::Unit(i / 2 % 3) : any_direction(random);
+    std::size_t index = 0;
+    for (std::size_t k = 0; k < corners.size(); ++k)
+      if (n.dot(corners[k]) > n.dot(corners[index])) index = k;
+    for (std::size_t k = index + 1; k < corners.size(); ++k)
+      ties += n.dot(corners[k]) == n.dot(corners[index]) ? 1 : 0;
+    const HullCorners::Farthest farthest = corners.farthest(n);
+    ASSERT_EQ(farthest.index, index);
+    ASSERT_EQ(farthest.reach_mm, n.dot(corners[index]));
+  }
+  EXPECT_GT(ties, 1'000);
+}
+
 }  // namespace
 }  // namespace mortise
