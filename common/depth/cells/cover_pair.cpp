@@ -310,15 +310,14 @@ CoverPair::Views CoverPair::views_of(const PairPath& path, const Span& span) {
   return views;
 }
 
-std::vector<CoverPair::Cells> CoverPair::all_cells() const {
-  std::vector<Cells> all;
+template <class Visit>
+bool CoverPair::each_pair(Visit&& visit) const {
   for (std::size_t i = 0; i < parts_[0]->cells.size(); ++i)
     for (std::size_t j = 0; j < parts_[1]->cells.size(); ++j) {
-      Cells& cells = all.emplace_back();
-      cells.cell[0] = i;
-      cells.cell[1] = j;
+      Cells cells{.cell = {i, j}, .keeper = {}, .places_S = {}, .apart_along = {}};
+      if (!visit(cells)) return false;
     }
-  return all;
+  return true;
 }
 
 std::optional<Vec3> CoverPair::apart_along(const Cells& cells, const Pose& X_BA, const Vec3& first,
@@ -362,8 +361,15 @@ bool CoverPair::turn_apart(const Views& views, Cells& cells, double limit_mm,
 CoverFree CoverPair::free_until(const PairPath& path, double limit_mm, double accuracy_mm) const {
   MORTISE_CHECK(limit_mm >= 0.0 && accuracy_mm >= 0.0, "a limit must be a length");
   CoverFree free;
-  std::vector<Cells> all = all_cells();
-  if (!apart(views_at(path.pose(0, 0.0)), all, limit_mm, free.work)) {
+  const Views at_begin = views_at(path.pose(0, 0.0));
+  Bound bound_at_begin(*this, at_begin, limit_mm, Bound::Asked::kWhether, free.work);
+  std::vector<Cells> all;
+  const bool begins_apart = each_pair([&](Cells& cells) {
+    if (!(bound_at_begin(cells) <= limit_mm)) return false;
+    all.push_back(std::move(cells));
+    return true;
+  });
+  if (!begins_apart) {
     free.t_free = 0.0;
     return free;
   }
@@ -415,15 +421,9 @@ CoverPair::Views CoverPair::views_at(const Pose& X_BA) {
 }
 
 bool CoverPair::apart(const Pose& X_BA, double limit_mm, std::uint64_t& work) const {
-  std::vector<Cells> all = all_cells();
-  return apart(views_at(X_BA), all, limit_mm, work);
-}
-
-bool CoverPair::apart(const Views& views, std::vector<Cells>& all, double limit_mm,
-                      std::uint64_t& work) const {
+  const Views views = views_at(X_BA);
   Bound bound(*this, views, limit_mm, Bound::Asked::kWhether, work);
-  return std::all_of(all.begin(), all.end(),
-                     [&](Cells& cells) { return bound(cells) <= limit_mm; });
+  return each_pair([&](Cells& cells) { return bound(cells) <= limit_mm; });
 }
 
 CoverOverlap CoverPair::overlap(const Pose& X_BA, double least_mm, std::uint64_t& work) const {
@@ -432,21 +432,21 @@ CoverOverlap CoverPair::overlap(const Pose& X_BA, double least_mm, std::uint64_t
   const Views views = views_at(X_BA);
   CoverOverlap overlap;
   overlap.most_mm = least_mm;
-  std::vector<Cells> all = all_cells();
-  const Cells* deciding = nullptr;
-  for (Cells& cells : all) {
+  Cells deciding;
+  each_pair([&](Cells& cells) {
     const double bound = Bound(*this, views, overlap.most_mm, Bound::Asked::kHowDeep, work)(cells);
-    if (!(bound > overlap.most_mm)) continue;
+    if (!(bound > overlap.most_mm)) return true;
     overlap.most_mm = bound;
-    deciding = &cells;
-  }
-  if (deciding == nullptr || deciding->keeper.role < 0) return overlap;
-  overlap.keeper = deciding->keeper;
+    deciding = std::move(cells);
+    return true;
+  });
+  if (deciding.keeper.role < 0) return overlap;
+  overlap.keeper = deciding.keeper;
   MORTISE_CHECK(overlap.keeper.by_void
                     ? overlap.keeper.v < parts_[1 - overlap.keeper.role]->voids.size()
                     : is_unit(overlap.keeper.n),
                 "what keeps two cells apart is a void of a part or a unit direction");
-  overlap.places_S = places_of(*deciding, views);
+  overlap.places_S = places_of(deciding, views);
   return overlap;
 }
 

@@ -73,7 +73,7 @@ class CoverPair {
   };
   /// A cell of A and one of B, and what kept them apart last.
   struct Cells {
-    std::size_t cell[2];
+    std::size_t cell[2] = {0, 0};
     CoverKeeper keeper;
     std::vector<Vec3> places_S;          // of part keeper.role, what comes farthest
     std::optional<Vec3> apart_along[2];  // in B, where the span begins and ends
@@ -83,10 +83,9 @@ class CoverPair {
 
   static Views views_at(const Pose& X_BA);
   static Views views_of(const PairPath& path, const Span& span);
-  std::vector<Cells> all_cells() const;
-  /// Leaves with each pair of cells what keeps it apart.
-  bool apart(const Views& views, std::vector<Cells>& all, double limit_mm,
-             std::uint64_t& work) const;
+  /// visit(cells) for each pair of cells in turn, until one says false: then false.
+  template <class Visit>
+  bool each_pair(Visit&& visit) const;
   /// Kept apart over a span by a direction that turns: from that in which they are farthest apart
   /// where it begins to that where it ends.
   bool turn_apart(const Views& views, Cells& cells, double limit_mm, std::uint64_t& work) const;
