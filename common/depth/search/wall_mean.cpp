@@ -8,6 +8,8 @@ namespace {
 
 // Halvings of the share in the search for the best one: to a thousandth.
 constexpr int kShareSteps = 16;
+// More than the sums of a mean of millimetres round off, mm.
+constexpr double kMeanRounding_mm = 1e-9;
 
 /// Shares s in [0, 1] of the second wall for which all means that were asked keep below the limit.
 class Shares {
@@ -41,6 +43,19 @@ struct OnCircle {
 // `of_ball`.
 double gain_mm(const Patch::Circle& circle, const Vec3& slope, const Vec3& of_ball) {
   return (slope - slope.dot(circle.axis) * circle.axis).norm() + of_ball.norm();
+}
+
+// Of one point of the circle, and one of a ball, the mean is a line over the shares, nowhere above
+// that of all: of the points that are deepest at three shares.
+void keep_points(const Patch::Circle& circle, const OnCircle& a, const OnCircle& b,
+                 Shares& shares) {
+  for (const double s : {0.0, 0.5, 1.0}) {
+    const Vec3 slope = (1.0 - s) * a.slope_mm + s * b.slope_mm;
+    const Vec3 u = (slope - slope.dot(circle.axis) * circle.axis).stableNormalized();
+    const Vec3 of_ball = ((1.0 - s) * a.of_balls_mm + s * b.of_balls_mm).stableNormalized();
+    shares.keep(a.middle_mm + a.slope_mm.dot(u) + a.of_balls_mm.dot(of_ball),
+                b.middle_mm + b.slope_mm.dot(u) + b.of_balls_mm.dot(of_ball));
+  }
 }
 
 OnCircle on_circle(const ConvexWall& wall, const Patch& patch, const Patch::Circle& circle) {
@@ -84,6 +99,9 @@ bool circles_keep_off(const ConvexWall& first, const ConvexWall& second, const P
   }
   if (shares.any()) return true;
   if (!known) return false;
+  Shares of_points(limit_mm + kMeanRounding_mm);
+  for (int i = 0; i < patch.circle_count; ++i) keep_points(patch.circles[i], a[i], b[i], of_points);
+  if (!of_points.any()) return false;
   // The largest mean is a convex function of the share.
   const auto largest = [&](double s) {
     double most = -kInfinity;

@@ -74,5 +74,45 @@ TEST(WallMean, NoPointOfAPatchThatIsKeptOffIsBelowBothWalls) {
   EXPECT_GT(denied, test::effort(300));
 }
 
+// Of circles below two planes: where some mean of both depths is no larger on any of them, and only
+// there.
+TEST(WallMean, CirclesAreKeptOffWhereSomeMeanIsNoLarger) {
+  Draw draw(15);
+  int inner = 0;
+  for (int i = 0; i < test::effort(2000); ++i) {
+    Patch patch;
+    for (int k = 0; k <= i % 3; ++k)
+      patch.circles[patch.circle_count++] = {draw.vector(3.0), draw.vector(1.0).normalized(),
+                                             draw.in(0.5, 10.0), 0.0};
+    patch.points[patch.count++] = patch.center = patch.circles[0].center;
+    patch.turn_rad = 2.0;
+    patch.bulge_mm = 100.0;  // only the circles say anything
+    ConvexWall first, second;
+    for (ConvexWall* wall : {&first, &second}) {
+      wall->normal = draw.vector(1.0).normalized();
+      wall->point = draw.vector(5.0);
+    }
+    double least = kInfinity, least_share = 0.0;
+    constexpr int kShares = 2000;
+    for (int k = 0; k <= kShares; ++k) {
+      const double share = static_cast<double>(k) / kShares;
+      const Vec3 down = -(1.0 - share) * first.normal - share * second.normal;
+      double most = -kInfinity;
+      for (int c = 0; c < patch.circle_count; ++c) {
+        const Patch::Circle& circle = patch.circles[c];
+        most = std::max(most, (1.0 - share) * first.depth_mm(circle.center) +
+                                  share * second.depth_mm(circle.center) +
+                                  circle.radius_mm * down.cross(circle.axis).norm());
+      }
+      if (most < least) least_share = share;
+      least = std::min(least, most);
+    }
+    inner += least_share > 0.0 && least_share < 1.0 ? 1 : 0;
+    EXPECT_TRUE(mean_keeps_off(first, second, patch, least + 0.05)) << "case " << i;
+    EXPECT_FALSE(mean_keeps_off(first, second, patch, least - 0.05)) << "case " << i;
+  }
+  EXPECT_GT(inner, test::effort(400));
+}
+
 }  // namespace
 }  // namespace mortise
