@@ -179,11 +179,13 @@ class Neighbourhood {
     return true;
   }
 
-  // Does the facet hold the patch off? Then it is kept as a wall.
+  // Does the facet hold the patch off? Then it is kept as a wall. All triangles of a declared face
+  // say the same.
   bool add_wall(std::uint32_t t, const Corners& c) {
     Facet facet;
     facet.triangle = t;
     const SurfaceBand::Face& face = k_.face(t);
+    if (&face == open_face_) return false;
     facet.surface = Body::surface_of(face, proof_.layer);
     facet.offset_mm = Body::offset_of(face, proof_.layer);
     const KnownDepth depth = depth_below(facet, c);
@@ -196,7 +198,10 @@ class Neighbourhood {
       facet.covers_along_mm = depth.along_mm;
       facet.slack_mm = proof_.limit_mm * along - depth.face_mm;
     }
-    if (facet.slack_mm < -proof_.rounding_mm) return false;
+    if (facet.slack_mm < -proof_.rounding_mm) {
+      if (facet.surface != nullptr) open_face_ = &face;
+      return false;
+    }
     if (scratch_.walls.size() < kMostWalls) scratch_.walls.push_back(facet);
     return true;
   }
@@ -382,6 +387,7 @@ class Neighbourhood {
   Vec3 up_;
   Corners nearest_;
   double reach_ = 0.0;
+  const SurfaceBand::Face* open_face_ = nullptr;  // the declared one that held nothing off last
 };
 
 }  // namespace
