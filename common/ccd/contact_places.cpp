@@ -107,7 +107,7 @@ class Places {
       if (done[i]) continue;
       std::vector<std::size_t> alike;
       for (std::size_t j = i; j < places_.size(); ++j)
-        if (!done[j] && (places_[j].normal_W - places_[i].normal_W).norm() <= kSameDirection) {
+        if (!done[j] && is_same_direction(places_[j].normal_W, places_[i].normal_W)) {
           done[j] = 1;
           alike.push_back(j);
         }
@@ -117,6 +117,12 @@ class Places {
   }
 
  private:
+  // Most are far from it, and need no root.
+  static bool is_same_direction(const Vec3& x, const Vec3& y) {
+    const double chord2 = (x - y).squaredNorm();
+    return chord2 < 2.0 * kSameDirection * kSameDirection && std::sqrt(chord2) <= kSameDirection;
+  }
+
   // Triangles that share a corner show it once.
   void add(std::size_t place, std::vector<std::size_t>& chosen) const {
     for (const std::size_t other : chosen)
@@ -129,15 +135,20 @@ class Places {
   void keep_outermost(const std::vector<std::size_t>& alike,
                       std::vector<ContactPlace>& kept) const {
     const Across across(places_[alike.front()].normal_W);
+    std::vector<Eigen::Vector2d> flat;
+    for (const std::size_t j : alike) flat.push_back(across.flat(places_[j].point_W));
     std::vector<std::size_t> chosen;
     for (int k = 0; k < kOutermost; ++k) {
       const double angle = 2.0 * std::numbers::pi * (k + 0.3) / kOutermost;
       const Eigen::Vector2d way(std::cos(angle), std::sin(angle));
-      std::size_t best = alike.front();
-      for (const std::size_t j : alike)
-        if (way.dot(across.flat(places_[j].point_W)) > way.dot(across.flat(places_[best].point_W)))
+      std::size_t best = 0;
+      double most = way.dot(flat.front());
+      for (std::size_t j = 1; j < flat.size(); ++j)
+        if (const double along = way.dot(flat[j]); along > most) {
+          most = along;
           best = j;
-      add(best, chosen);
+        }
+      add(alike[best], chosen);
     }
     // And the deepest, wherever it is.
     std::size_t deepest = alike.front();

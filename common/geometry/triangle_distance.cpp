@@ -194,6 +194,9 @@ namespace {
 // one of them alone proves nothing: there may be the other side of a sharp edge.
 constexpr double kBehind = 0.9;
 
+// More than a gap along a direction is rounded by, as a share of what is measured.
+constexpr double kSeparationRounding = 1e-12;
+
 TriangleSeparation separation_of(const Triangle& a, const Triangle& b, bool outside_only) {
   const Sides sa(a), sb(b);
   const Vec3 na = Face(a, sa).normal(), nb = Face(b, sb).normal();
@@ -203,21 +206,30 @@ TriangleSeparation separation_of(const Triangle& a, const Triangle& b, bool outs
     return !outside_only || from_a_to_b.dot(out_a) > -kBehind || from_a_to_b.dot(out_b) < kBehind;
   };
   TriangleSeparation best{-std::numeric_limits<double>::infinity(), Vec3::Zero()};
+  // Relative to one corner: large common coordinates would cost digits.
+  const Vec3 from[5] = {a[1] - a[0], a[2] - a[0], b[0] - a[0], b[1] - a[0], b[2] - a[0]};
+  double size_mm = 0.0;
+  for (const Vec3& x : from) size_mm = std::max(size_mm, x.lpNorm<1>());
+  const auto gaps = [&](const Vec3& n) {
+    const double x1 = n.dot(from[0]), x2 = n.dot(from[1]), y0 = n.dot(from[2]), y1 = n.dot(from[3]),
+                 y2 = n.dot(from[4]);
+    return std::pair(std::min({y0, y1, y2}) - std::max({0.0, x1, x2}),
+                     std::min({0.0, x1, x2}) - std::max({y0, y1, y2}));
+  };
+  // Most directions part them less than one before did: seen without their length.
   const auto along = [&](const Vec3& direction) {
-    const double length = direction.norm();
+    const double length2 = direction.squaredNorm();
+    const double least_mm = best.distance_mm - kSeparationRounding * size_mm;
+    const auto [ahead, behind] = gaps(direction);
+    const double gap = std::max(ahead, behind);
+    if (std::copysign(gap * gap, gap) < std::copysign(least_mm * least_mm * length2, least_mm))
+      return;
+    const double length = std::sqrt(length2);
     if (!(length > 0.0)) return;
     const Vec3 n = direction / length;
-    // Relative to one corner: large common coordinates would cost digits.
-    double a_lo = 0.0, a_hi = 0.0, b_lo = n.dot(b[0] - a[0]), b_hi = b_lo;
-    for (int k = 1; k < 3; ++k) {
-      const double x = n.dot(a[k] - a[0]), y = n.dot(b[k] - a[0]);
-      a_lo = std::min(a_lo, x);
-      a_hi = std::max(a_hi, x);
-      b_lo = std::min(b_lo, y);
-      b_hi = std::max(b_hi, y);
-    }
-    if (b_lo - a_hi > best.distance_mm && allowed(n)) best = {b_lo - a_hi, n};
-    if (a_lo - b_hi > best.distance_mm && allowed(-n)) best = {a_lo - b_hi, -n};
+    const auto [ahead_mm, behind_mm] = gaps(n);
+    if (ahead_mm > best.distance_mm && allowed(n)) best = {ahead_mm, n};
+    if (behind_mm > best.distance_mm && allowed(-n)) best = {behind_mm, -n};
   };
   along(na);
   along(nb);
