@@ -292,8 +292,8 @@ TEST(LayerBound, NothingIsProvenBelowAPoint) {
     const Stated a = state(drawn.a, largest_mm, draw), b = state(drawn.b, largest_mm, draw);
     const OverlapQuery query = query_of(a, b, drawn.X_BA);
     const PairFrame pair(query);
-    const KnownOverlaps known = known_overlaps(
-        pair, find_candidate_triangles({&pair, pair.near_mm, false, false, nullptr}));
+    const KnownOverlaps known =
+        known_overlaps(pair, find_candidate_triangles({&pair, pair.near_mm}));
     for (int j = 0; j < 400; ++j) {
       const Layer layer = std::array{Layer::kMesh, Layer::kLower, Layer::kUpper}[j % 3];
       const int role = draw.up_to(2);

@@ -138,6 +138,39 @@ inline DrawnPart ball_socket(Random& random, double r_mm) {
   return part;
 }
 
+/// A ring whose hole is a cone; a ball of that radius sits on the middle of it, sitting_z_mm above
+/// the origin.
+inline DrawnPart cone_seat(Random& random, double ball_mm, double& sitting_z_mm) {
+  const double half = uniform(random, 0.35, 1.2), slope = std::tan(half);
+  const double contact = ball_mm * std::cos(half), narrow = 0.5 * contact, wide = 1.4 * contact;
+  const double top = (wide - narrow) / slope, outside = 2.0 * wide;
+  sitting_z_mm = (contact - narrow) / slope + ball_mm * std::sin(half);
+  shapes::Chain outer, hole;
+  hole.inward = true;
+  hole.start(narrow, 0.0).line(wide, top);
+  outer.start(outside, 0.0).line(outside, top);
+  DrawnPart part =
+      finish(random, turned(outer, {"outer"}, hole, {"cone"}, 12 + 4 * below(random, 12)), 0.03);
+  part.round_mm = narrow;
+  part.length_mm = top;
+  part.depth = [=](const Vec3& x, const OffsetOf& o) {
+    return std::min({outside + o("outer") - radius(x), x.z() + o("lower"), top + o("upper") - x.z(),
+                     std::cos(half) * (radius(x) - narrow - slope * x.z()) + o("cone")});
+  };
+  part.what = "cone seat";
+  return part;
+}
+
+/// A ball on its seat, or a little off it.
+inline DrawnPair seated_ball(Random& random) {
+  const double r = uniform(random, 3.0, 12.0);
+  double z_mm = 0.0;
+  DrawnPair pair{ball(random, r), cone_seat(random, r, z_mm), Pose()};
+  pair.X_BA.q = rotation_exp(uniform(random, 0.0, 3.1) * any_direction(random));
+  pair.X_BA.p = Vec3(0.0, 0.0, z_mm) + uniform(random, 0.0, 0.15) * any_direction(random);
+  return pair;
+}
+
 /// One of them beside any other part.
 inline DrawnPair ball_pair(Random& random) {
   const double r = uniform(random, 3.0, 12.0), other_r = r + uniform(random, -0.05, 0.1);

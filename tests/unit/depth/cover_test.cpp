@@ -173,6 +173,18 @@ TEST(Cover, NoBoundOfABallIsBelowAPointInBoth) {
   EXPECT_GT(tally.apart, test::effort(150));
 }
 
+// The hole of a cone is open though the chords of its rims are inside of it: whether a ball meets
+// its seat is known.
+TEST(Cover, WhetherABallMeetsItsSeatIsKnown) {
+  const Tally tally = judge_poses(
+      7015, test::effort(60), [](CoverLayer&) {}, seated_ball);
+  EXPECT_EQ(tally.below, 0);
+  EXPECT_EQ(tally.differ, 0);
+  EXPECT_LE(tally.poses - tally.overlap - tally.apart, test::effort(3));
+  EXPECT_GT(tally.overlap, test::effort(30));
+  EXPECT_GT(tally.apart, test::effort(30));
+}
+
 TEST(Cover, PlantedFaultsOfABallAreSeen) {
   const auto small_ball = [](CoverLayer& layer) {
     for (ConvexCell& cell : layer.cells)
