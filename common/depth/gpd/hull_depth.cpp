@@ -197,7 +197,8 @@ ConvexBody hull_of(const Solid& part, const Pose& X_W) {
 
 ConvexBody hull_of(const ConvexCell& cell, const Pose& X_W) {
   double radius_mm = 0.0;
-  for (const Vec3& x : cell.corners.all()) radius_mm = std::max(radius_mm, (x - cell.middle).norm());
+  for (const Vec3& x : cell.corners.all())
+    radius_mm = std::max(radius_mm, (x - cell.middle).norm());
   return {[&cell, &X_W](const Vec3& n_W) -> Vec3 {
             return X_W * cell.farthest(X_W.q.conjugate() * n_W);
           },

@@ -50,7 +50,8 @@ TEST(InnerPieces, LieWithinTheirPart) {
         }
         EXPECT_LT(signed_distance_mm(*part, in / sum), 1e-12);
       }
-      for (const Vec3& corner : piece->corners.all()) EXPECT_LT(signed_distance_mm(*part, corner), 1e-9);
+      for (const Vec3& corner : piece->corners.all())
+        EXPECT_LT(signed_distance_mm(*part, corner), 1e-9);
     }
   EXPECT_GT(pieces, 5 * test::effort(60) / 4);
 }
