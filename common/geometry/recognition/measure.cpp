@@ -54,6 +54,12 @@ double depth_at_grid(const TriangleMesh& mesh, const SurfaceAt& surface, std::ui
   return most;
 }
 
+// Is a height about that of the one or the other end?
+bool near_an_end(const Interval& along, double z) {
+  const double near = 1e-3 * along.width();
+  return z - along.lo <= near || along.hi - z <= near;
+}
+
 // Where a corner lies as seen from the axis.
 struct CornerView {
   double z = 0.0, angle = 0.0, meridian = 0.0;
@@ -87,7 +93,9 @@ class CornerViews {
   }
 
  private:
-  static constexpr std::size_t kPlaces = 1024;  // what falls out is worked out again
+  // What falls out is worked out again. Most regions have tens of corners: to clear 1024 places
+  // took as long as to measure them.
+  static constexpr std::size_t kPlaces = 128;
   static constexpr std::uint32_t kNone = 0xffffffffU;
 
   const TriangleMesh& mesh_;
@@ -195,11 +203,18 @@ RegionMeasure measure_region(const TriangleMesh& mesh, const Surface& surface,
   m.meridian_rad = distinct(std::move(angles.meridian), kSameStep_rad);
   const auto [lo, hi] = std::minmax_element(angles.heights.begin(), angles.heights.end());
   if (lo != angles.heights.end()) m.along_mm = {*lo, *hi};
-  const double near = 1e-3 * m.along_mm.width();
-  m.one_row = std::all_of(angles.heights.begin(), angles.heights.end(), [&](double z) {
-    return z - m.along_mm.lo <= near || m.along_mm.hi - z <= near;
-  });
+  m.one_row = std::all_of(angles.heights.begin(), angles.heights.end(),
+                          [&](double z) { return near_an_end(m.along_mm, z); });
   return m;
+}
+
+bool lie_in_one_row(const TriangleMesh& mesh, const Surface& surface,
+                    std::span<const std::uint32_t> triangles) {
+  const Interval along = extent_along_mm(mesh, surface, triangles);
+  for (const std::uint32_t t : triangles)
+    for (int k = 0; k < 3; ++k)
+      if (!near_an_end(along, (mesh.corner(t, k) - surface.point).dot(surface.axis))) return false;
+  return true;
 }
 
 bool fix_one_quadric(std::span<const Vec3> corners, double off_mm) {

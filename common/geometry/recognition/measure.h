@@ -29,6 +29,10 @@ double size_mm(const Surface& surface, std::span<const Vec3> corners);
 RegionMeasure measure_region(const TriangleMesh& mesh, const Surface& surface,
                              std::span<const std::uint32_t> triangles);
 
+/// RegionMeasure::one_row alone.
+bool lie_in_one_row(const TriangleMesh& mesh, const Surface& surface,
+                    std::span<const std::uint32_t> triangles);
+
 /// Do these corners, each off by no more than off_mm, lie on one surface of second degree only?
 /// Those on two plane curves lie on many: two planes together are one, so a ball through the
 /// corners of a low pyramid is chance. O(n).

@@ -2,40 +2,25 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <limits>
 #include <map>
 
 #include "common/base/constants.h"
 #include "common/geometry/recognition/finish.h"
-#include "common/geometry/recognition/seeds.h"
+#include "common/geometry/recognition/seed_fits.h"
 #include "common/geometry/recognition/surface_fit.h"
 
 namespace mortise {
 namespace {
 
-// How far corners may stand off, as shares of the radius, exact meshes first.
-constexpr std::array<double, 3> kShares{1e-6, 2e-5, 4e-4};
 // A kind of more parameters must explain this much more than a simpler one.
 constexpr double kWorthMore = 1.2;
 // What a later region takes over whole is smaller by at least this.
 constexpr double kTakesOver = 2.0;
 
-// A first guess this far off, as a share of the extent of its points, is of
-// another kind.
-constexpr double kFarOff = 0.05;
-// A fit to seeds that is so many times farther off than the loosest share after
-// a few steps will not come near.
-constexpr double kHopeless = 30.0;
 // Seeds that bulge by less than this part of what corners may be off show no
 // curve.
 constexpr double kLeastBulge = 0.1;
-// Fits to seeds stop where a step wins less: exact points win decades a step.
-constexpr double kWorthGoingOn = 0.05;
-
-// Corners of a few seeds that are farther off (root mean square) than this many times what may be
-// are off in larger sets too. One would do if every fit found the nearest surface of all.
-constexpr double kSurelyOff = 3.0;
 
 constexpr std::int32_t kNobody = -1;
 
@@ -47,6 +32,7 @@ class Recognizer {
         facets_(build_facets(solid, flat_allowance_mm(solid, quantum_mm_))),
         grower_(solid, facets_, quantum_mm_, options.plain),
         seeds_(solid, facets_, grower_),
+        fitter_(solid, seeds_, grower_, options.plain),
         options_(options),
         owner_(solid.mesh().triangles.size(), kNobody) {}
 
@@ -67,8 +53,7 @@ class Recognizer {
     if (given_up_[f] >= share || owner_[facets_.triangles(f).front()] != kNobody ||
         !seeds_.bends_smoothly(f))
       return;
-    SeedSets sets = seeds_.about(f);
-    recall(f, sets);
+    SeedSets sets = fitter_.about(f, known_off_[f]);
     auto region = best_about(sets, share);
     given_up_[f] = std::max(given_up_[f], share);
     if (region) {
@@ -91,13 +76,6 @@ class Recognizer {
            residual_of(region.surface, grower_.points_of(triangles)) <= region.allowed_mm;
   }
 
-  void recall(std::uint32_t f, SeedSets& sets) const {
-    auto known = known_off_[f].begin();
-    if (known == known_off_[f].end()) return;
-    for (auto* of : {&sets.ribbons, &sets.patches})
-      for (SeedSet& seeds : *of) seeds.off_share = *known++;
-  }
-
   // Gives the least.
   double remember(std::uint32_t f, const SeedSets& sets) {
     known_off_[f].clear();
@@ -110,10 +88,6 @@ class Recognizer {
             least = std::min(least, seeds.off_share[k]);
       }
     return least;
-  }
-
-  static bool grows_in_ribbons(SurfaceKind kind) {
-    return kind == SurfaceKind::kCylinder || kind == SurfaceKind::kCone;
   }
 
   // The region that explains most about a facet; simpler kinds win where they
@@ -134,105 +108,31 @@ class Recognizer {
 
   std::optional<Region> first_of(std::size_t kind, SeedSets& all, std::vector<SeedSet>& sets,
                                  double share) {
-    for (SeedSet& seeds : sets) {
-      double& off_share = seeds.off_share[kind];
-      if (off_share > share) continue;
-      if (const double least = least_share(kind, all, seeds, share); least > share) {
-        off_share = least;
-        continue;
-      }
-      fit(kind, seeds);
-      if (off_share > share) continue;
-      if (auto region = grown(*seeds.fits[kind].surface, seeds, share)) return region;
-    }
+    for (SeedSet& seeds : sets)
+      if (fitter_.holds(kind, all, seeds, share))
+        if (auto region = grown(*seeds.fits[kind].surface, seeds, share)) return region;
     return std::nullopt;
-  }
-
-  // Corners that are far off every surface of a kind are so in any larger set too: the smallest
-  // sets, which cost least, are asked first.
-  double least_share(std::size_t kind, SeedSets& all, const SeedSet& seeds, double share) {
-    const bool patch =
-        &seeds >= all.patches.data() && &seeds < all.patches.data() + all.patches.size();
-    for (std::uint32_t parts = options_.plain ? 0U : seeds.holds; parts != 0;) {
-      const auto bit = static_cast<unsigned>(std::bit_width(parts)) - 1U;
-      parts ^= 1U << bit;
-      SeedSet& part = all.at_bit(bit);
-      // Ribbons were asked before, or are not asked for this kind at all.
-      if (patch == (bit >= SeedSets::kPatchBit) && !(part.off_share[kind] > share)) fit(kind, part);
-      if (part.fits[kind].least_share > share) return part.fits[kind].least_share;
-    }
-    return 0.0;
-  }
-
-  void fill(SeedSet& seeds) {
-    if (!seeds.points.empty()) return;
-    seeds.points = grower_.points_of(seeds.triangles);
-    seeds.normals = grower_.normals_of(seeds.triangles);
-  }
-
-  void fit(std::size_t kind, SeedSet& seeds) {
-    SeedFit& fit = seeds.fits[kind];
-    if (fit.asked) return;
-    fit.asked = true;
-    fill(seeds);
-    seeds.off_share[kind] = std::numeric_limits<double>::infinity();
-    if (const auto guess = guess_of(kCurvedKinds[kind], seeds.points, seeds.normals))
-      seeds.off_share[kind] = fit_from(*guess, seeds, fit);
-  }
-
-  // Gives how far off the fit leaves corners, as a share of its size.
-  double fit_from(const Surface& guess, const SeedSet& seeds, SeedFit& fit) const {
-    constexpr double kNever = std::numeric_limits<double>::infinity();
-    if (residual_of(guess, seeds.points) > kFarOff * extent_of(seeds.points)) return kNever;
-    const double rounding_mm = grower_.rounding_mm(), size = size_mm(guess, seeds.points);
-    const double hopeless_mm = kHopeless * (kShares.back() * size + rounding_mm);
-    fit.surface = fitted_surface(guess, seeds.points, kWorthGoingOn, hopeless_mm);
-    if (!fit.surface) return kNever;
-    const double fit_size = size_mm(*fit.surface, seeds.points);
-    const Residuals off = residuals_of(*fit.surface, seeds.points);
-    fit.least_share = (off.mean_mm / kSurelyOff - rounding_mm) / fit_size;
-    return (off.most_mm - rounding_mm) / fit_size;
   }
 
   std::optional<Region> grown(const Surface& fit, const SeedSet& seeds, double share) {
     const double size = size_mm(fit, seeds.points), extent_mm = extent_of(seeds.points);
     const double bulge_mm = extent_mm * extent_mm / (8.0 * size);
     if (bulge_mm < kLeastBulge * share * size) return std::nullopt;
-    return grower_.grow(fit, seeds.triangles, share);
+    return grower_.grow(fit, {seeds.triangles, seeds.points, seeds.normals}, share);
   }
 
   // A strip may be one of a torus: its axis is that of the torus.
   std::optional<Region> torus_of(const Region& strip, SeedSets& sets, double share) {
-    if (!measure_region(solid_.mesh(), strip.surface, strip.triangles).one_row) return std::nullopt;
+    if (!lie_in_one_row(solid_.mesh(), strip.surface, strip.triangles)) return std::nullopt;
     for (SeedSet& seeds : sets.patches) {
-      fill(seeds);
+      fitter_.fill(seeds);
       const auto guess = guess_torus_about(strip.surface, seeds.points);
       if (!guess) continue;
       SeedFit fit;
-      if (fit_from(*guess, seeds, fit) > share) continue;
+      if (fitter_.fit_from(*guess, seeds, fit) > share) continue;
       if (auto region = grown(*fit.surface, seeds, share)) return region;
     }
     return std::nullopt;
-  }
-
-  static double extent_of(std::span<const Vec3> points) {
-    Box box;
-    for (const Vec3& x : points) box.add(x);
-    return (box.hi - box.lo).norm();
-  }
-
-  static std::optional<Surface> guess_of(SurfaceKind kind, std::span<const Vec3> points,
-                                         std::span<const OrientedPoint> normals) {
-    switch (kind) {
-      case SurfaceKind::kCylinder:
-        return guess_cylinder(points, normals);
-      case SurfaceKind::kCone:
-        return guess_cone(points, normals);
-      case SurfaceKind::kSphere:
-        return guess_sphere(points);
-      default:
-        return guess_torus(points, normals);
-    }
   }
 
   // Triangles belong to who came first, except that a larger region takes over
@@ -272,7 +172,8 @@ class Recognizer {
   double quantum_mm_ = 0.0;
   const Facets facets_;
   RegionGrower grower_;
-  SeedFinder seeds_;
+  const SeedFinder seeds_;
+  SeedFitter fitter_;
   RecognitionOptions options_;
   std::vector<std::int32_t> owner_;
   std::vector<Region> regions_;

@@ -100,6 +100,17 @@ bool bends_enough(const Region& ball, std::span<const OrientedPoint> facets) {
 
 }  // namespace
 
+std::vector<Vec3> corners_of(const TriangleMesh& mesh, std::span<const std::uint32_t> triangles,
+                             Marks& met) {
+  met.clear();
+  std::vector<Vec3> points;
+  points.reserve(triangles.size() + 2);
+  for (const std::uint32_t t : triangles)
+    for (const std::uint32_t i : mesh.triangles[t])
+      if (met.add(i)) points.push_back(mesh.points_mm[i]);
+  return points;
+}
+
 void FlatBalls::keep(const Region& ball, std::size_t triangles_of_mesh) {
   of_triangle_.resize(triangles_of_mesh, 0);
   balls_.push_back({ball.share, ball.allowed_mm});
@@ -122,23 +133,10 @@ RegionGrower::RegionGrower(const Solid& solid, const Facets& facets, double quan
       facets_(facets),
       rounding_mm_(2.0 * quantum_mm + kRoundingShare * solid.sphere().radius_mm),
       plain_(plain),
+      corners_(mesh_.points_mm.size()),
       triangle_mark_(mesh_.triangles.size(), 0),
-      point_mark_(mesh_.points_mm.size(), 0),
       point_asked_(mesh_.points_mm.size(), 0) {
   tell_edges();
-}
-
-std::vector<Vec3> RegionGrower::points_of(std::span<const std::uint32_t> triangles) {
-  ++mark_;
-  std::vector<Vec3> points;
-  points.reserve(triangles.size() + 2);
-  for (const std::uint32_t t : triangles)
-    for (const std::uint32_t i : mesh_.triangles[t])
-      if (point_mark_[i] != mark_) {
-        point_mark_[i] = mark_;
-        points.push_back(mesh_.points_mm[i]);
-      }
-  return points;
 }
 
 std::vector<OrientedPoint> RegionGrower::normals_of(
@@ -273,20 +271,21 @@ bool RegionGrower::settle(Region& region) {
 }
 
 // Can the surface begin here? Says on which side its material is.
-bool RegionGrower::starts(Region& region, std::span<const std::uint32_t> seeds) {
-  region.residual_mm = residual_of(region.surface, points_of(seeds));
+bool RegionGrower::starts(Region& region, const Seeds& seeds) const {
+  region.residual_mm = residual_of(region.surface, seeds.corners);
   if (region.residual_mm > region.allowed_mm) return false;
   double outward = 0.0;
   const SurfaceAt at(region.surface);
-  for (const OrientedPoint& f : normals_of(seeds))
+  for (const OrientedPoint& f : seeds.normals)
     outward += f.normal.dot(at.outward_normal(f.point)) > 0.0 ? 1.0 : -1.0;
   if (outward < 0.0) region.surface.inward = !region.surface.inward;
-  return std::all_of(seeds.begin(), seeds.end(),
+  return std::all_of(seeds.triangles.begin(), seeds.triangles.end(),
                      [&](std::uint32_t t) { return belongs(t, at, region.allowed_mm); });
 }
 
 // What does not belong to the settled surface goes, until it is settled.
 bool RegionGrower::settles(Region& region, std::size_t least) {
+  if (points_of(region.triangles).size() < corners_needed(region.surface.kind)) return false;
   constexpr int kRounds = 4;  // what goes on losing facets is no surface
   for (int round = 0; round < kRounds; ++round) {
     drop_deep_facets(mesh_, region);
@@ -340,20 +339,19 @@ void RegionGrower::keep(SurfaceKind kind, double share, std::span<const std::uin
     attempt_of[t] = static_cast<std::uint32_t>(attempts_.size());
 }
 
-std::optional<Region> RegionGrower::grow(const Surface& guess, std::span<const std::uint32_t> seeds,
-                                         double share) {
+std::optional<Region> RegionGrower::grow(const Surface& guess, const Seeds& seeds, double share) {
   Region region;
   region.surface = guess;
   region.share = share;
-  region.triangles.assign(seeds.begin(), seeds.end());
-  region.allowed_mm = share * size_mm(guess, mesh_, seeds) + rounding_mm_;
-  if (flat_balls_.hold(seeds, region)) return std::nullopt;
-  const Attempt* before = grown_before(guess, seeds, region);
+  region.triangles.assign(seeds.triangles.begin(), seeds.triangles.end());
+  region.allowed_mm = share * size_mm(guess, seeds.corners) + rounding_mm_;
+  if (flat_balls_.hold(seeds.triangles, region)) return std::nullopt;
+  const Attempt* before = grown_before(guess, seeds.triangles, region);
   if (before && !before->outcome) return std::nullopt;
   if (!starts(region, seeds)) return std::nullopt;
   if (before) return before->outcome;
   // Outward in doubling steps, a fit after each.
-  for (std::size_t limit = 2 * seeds.size();; limit *= 2) {
+  for (std::size_t limit = 2 * seeds.triangles.size();; limit *= 2) {
     const std::size_t size = region.triangles.size();
     spread(region.surface, region.allowed_mm, limit, region.triangles);
     if (region.triangles.size() == size) break;
@@ -361,7 +359,7 @@ std::optional<Region> RegionGrower::grow(const Surface& guess, std::span<const s
   }
   const std::vector<std::uint32_t> reached = region.triangles;
   std::optional<Region> outcome;
-  if (settles(region, seeds.size())) outcome = std::move(region);
+  if (settles(region, seeds.triangles.size())) outcome = std::move(region);
   keep(guess.kind, share, reached, outcome);
   return outcome;
 }

@@ -19,6 +19,32 @@ struct Region {
   double share = 0.0;       ///< of the size, without rounding
 };
 
+/// Triangles that a region grows from, with their corners and normals (corners_of, normals_of).
+struct Seeds {
+  std::span<const std::uint32_t> triangles;
+  std::span<const Vec3> corners;
+  std::span<const OrientedPoint> normals;
+};
+
+/// A set of indices that is cleared in O(1).
+class Marks {
+ public:
+  explicit Marks(std::size_t count) : mark_(count, 0) {}
+  void clear() { ++stamp_; }
+  bool has(std::uint32_t i) const { return mark_[i] == stamp_; }
+  /// False when it was there.
+  bool add(std::uint32_t i) { return std::exchange(mark_[i], stamp_) != stamp_; }
+
+ private:
+  std::vector<std::uint32_t> mark_;
+  std::uint32_t stamp_ = 1;
+};
+
+/// The corners of triangles, each once, in order of appearance. met: corners of the mesh, for this
+/// call.
+std::vector<Vec3> corners_of(const TriangleMesh& mesh, std::span<const std::uint32_t> triangles,
+                             Marks& met);
+
 /// Balls that hold and are too flat to be told from a plane.
 class FlatBalls {
  public:
@@ -45,14 +71,15 @@ class RegionGrower {
   /// each, cut back to corners within share * size + rounding. Nothing when fewer triangles than
   /// the seeds remain, or when the region shows too little of the surface. A surface that other
   /// seeds have grown before is not grown again.
-  std::optional<Region> grow(const Surface& guess, std::span<const std::uint32_t> seeds,
-                             double share);
+  std::optional<Region> grow(const Surface& guess, const Seeds& seeds, double share);
 
   /// Fits the surface to what the region has now; false when it no longer holds.
   bool settle(Region& region);
 
   /// The corners of triangles, each once, in order of appearance.
-  std::vector<Vec3> points_of(std::span<const std::uint32_t> triangles);
+  std::vector<Vec3> points_of(std::span<const std::uint32_t> triangles) {
+    return corners_of(mesh_, triangles, corners_);
+  }
   /// Middle and facet normal of triangles whose normal is known.
   std::vector<OrientedPoint> normals_of(std::span<const std::uint32_t> triangles) const;
 
@@ -83,7 +110,7 @@ class RegionGrower {
                               const Region& region) const;
   void keep(SurfaceKind kind, double share, std::span<const std::uint32_t> reached,
             const std::optional<Region>& outcome);
-  bool starts(Region& region, std::span<const std::uint32_t> seeds);
+  bool starts(Region& region, const Seeds& seeds) const;
   bool settles(Region& region, std::size_t least);
   bool refit(Region& region, const std::vector<Vec3>& corners, std::size_t most) const;
   bool fit_all(Region& region);
@@ -95,7 +122,8 @@ class RegionGrower {
   double rounding_mm_ = 0.0;
   bool plain_ = false;
   std::vector<std::array<std::uint8_t, 3>> edges_;
-  std::vector<std::uint32_t> triangle_mark_, point_mark_;
+  Marks corners_;
+  std::vector<std::uint32_t> triangle_mark_;
   std::uint32_t mark_ = 0;
   // By point: twice the mark of the spread that asked, and one more where it lies on the surface.
   std::vector<std::uint32_t> point_asked_;

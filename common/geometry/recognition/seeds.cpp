@@ -12,17 +12,33 @@ constexpr int kReach[] = {8, 3, 1};
 constexpr std::size_t kPatch[] = {60, 18};
 // A facet of more triangles than this is a plane, not a step of a round.
 constexpr std::size_t kLargestFacet = 256;
+// Three triangles in a row have five corners: too few for any guess.
+constexpr std::size_t kLeastRibbon = 4;
 // The far edge of a facet of a round runs nearly along the near one.
 constexpr double kOpposite = 0.85;
+
+// Which ribbons and smaller patches lie within each patch.
+void tell_parts_of_patches(SeedSets& sets, Marks& in_patch) {
+  for (std::size_t i = 0; i < sets.patches.size(); ++i) {
+    SeedSet& patch = sets.patches[i];
+    in_patch.clear();
+    for (const std::uint32_t t : patch.triangles) in_patch.add(t);
+    const auto look = [&](const SeedSet& part, std::size_t bit) {
+      if (part.triangles.size() < patch.triangles.size() &&
+          std::all_of(part.triangles.begin(), part.triangles.end(),
+                      [&](std::uint32_t t) { return in_patch.has(t); }))
+        patch.holds |= 1U << bit;
+    };
+    for (std::size_t k = 0; k < sets.ribbons.size(); ++k) look(sets.ribbons[k], k);
+    for (std::size_t k = i + 1; k < sets.patches.size(); ++k)
+      look(sets.patches[k], SeedSets::kPatchBit + k);
+  }
+}
 
 }  // namespace
 
 SeedFinder::SeedFinder(const Solid& solid, const Facets& facets, const RegionGrower& grower)
-    : mesh_(solid.mesh()),
-      topology_(solid.topology()),
-      facets_(facets),
-      grower_(grower),
-      mark_(mesh_.triangles.size(), 0) {
+    : mesh_(solid.mesh()), topology_(solid.topology()), facets_(facets), grower_(grower) {
   for (std::uint32_t f = 0; f < facets_.count(); ++f) {
     if (facets_.reliable[f] && facets_.triangles(f).size() <= kLargestFacet) add_crossings_of(f);
     begin_.push_back(crossings_.size());
@@ -80,9 +96,14 @@ std::vector<std::uint32_t> SeedFinder::walk(std::uint32_t seed, Crossing step,
   return row;
 }
 
-void SeedFinder::add_triangles(std::uint32_t facet, std::vector<std::uint32_t>& out) const {
-  const auto triangles = facets_.triangles(facet);
-  out.insert(out.end(), triangles.begin(), triangles.end());
+std::vector<std::uint32_t> SeedFinder::triangles_of(std::span<const std::uint32_t> row) const {
+  std::size_t count = 0;
+  for (const std::uint32_t f : row) count += facets_.triangles(f).size();
+  std::vector<std::uint32_t> out;
+  out.reserve(count);
+  for (const std::uint32_t f : row)
+    for (const std::uint32_t t : facets_.triangles(f)) out.push_back(t);
+  return out;
 }
 
 void SeedFinder::add_ribbons(std::uint32_t seed, SeedSets& sets) const {
@@ -114,10 +135,11 @@ void SeedFinder::add_ribbons(std::uint32_t seed, SeedSets& sets) const {
       const std::size_t n = std::min(behind.size(), most(ahead));
       if (m + n < 2 || m + n == last) continue;
       last = m + n;
-      std::vector<std::uint32_t> ribbon;
-      add_triangles(seed, ribbon);
-      for (std::size_t i = 0; i < m; ++i) add_triangles(ahead[i], ribbon);
-      for (std::size_t i = 0; i < n; ++i) add_triangles(behind[i], ribbon);
+      std::vector<std::uint32_t> row{seed};
+      row.insert(row.end(), ahead.begin(), ahead.begin() + static_cast<std::ptrdiff_t>(m));
+      row.insert(row.end(), behind.begin(), behind.begin() + static_cast<std::ptrdiff_t>(n));
+      std::vector<std::uint32_t> ribbon = triangles_of(row);
+      if (ribbon.size() < kLeastRibbon) continue;
       for (std::size_t i = longest; i < sets.ribbons.size(); ++i)
         sets.ribbons[i].holds |= 1U << sets.ribbons.size();
       sets.ribbons.emplace_back().triangles = std::move(ribbon);
@@ -125,19 +147,18 @@ void SeedFinder::add_ribbons(std::uint32_t seed, SeedSets& sets) const {
   }
 }
 
-void SeedFinder::add_patches(std::uint32_t seed, SeedSets& sets) {
-  std::vector<std::uint32_t> patch;
-  add_triangles(seed, patch);
+void SeedFinder::add_patches(std::uint32_t seed, SeedSets& sets, Marks& met) const {
+  const auto own = facets_.triangles(seed);
+  std::vector<std::uint32_t> patch(own.begin(), own.end());
+  patch.reserve(kPatch[0] + 2);
   if (patch.size() > kPatch[0]) patch.resize(kPatch[0]);
-  ++stamp_;
-  for (const std::uint32_t t : patch) mark_[t] = stamp_;
+  met.clear();
+  for (const std::uint32_t t : patch) met.add(t);
   for (std::size_t next = 0; next < patch.size() && patch.size() < kPatch[0]; ++next)
     for (int k = 0; k < 3; ++k) {
       if (!grower_.smooth(patch[next], k)) continue;
       const std::uint32_t other = topology_.neighbor[patch[next]][k];
-      if (mark_[other] == stamp_) continue;
-      mark_[other] = stamp_;
-      patch.push_back(other);
+      if (met.add(other)) patch.push_back(other);
     }
   std::size_t last = 0;
   for (const std::size_t size : kPatch) {
@@ -148,36 +169,18 @@ void SeedFinder::add_patches(std::uint32_t seed, SeedSets& sets) {
                                                  patch.begin() + static_cast<std::ptrdiff_t>(n));
   }
   // The facet and those beside it: whatever else is near belongs to others.
-  std::vector<std::uint32_t> cross;
-  add_triangles(seed, cross);
-  for (const Crossing& way : crossings(seed)) add_triangles(way.facet, cross);
+  std::vector<std::uint32_t> beside{seed};
+  for (const Crossing& way : crossings(seed)) beside.push_back(way.facet);
+  std::vector<std::uint32_t> cross = triangles_of(beside);
   if (cross.size() >= 4 && cross.size() <= kPatch[0])
     sets.patches.emplace_back().triangles = std::move(cross);
 }
 
-// Which ribbons and smaller patches lie within each patch.
-void SeedFinder::tell_parts_of_patches(SeedSets& sets) {
-  for (std::size_t i = 0; i < sets.patches.size(); ++i) {
-    SeedSet& patch = sets.patches[i];
-    ++stamp_;
-    for (const std::uint32_t t : patch.triangles) mark_[t] = stamp_;
-    const auto look = [&](const SeedSet& part, std::size_t bit) {
-      if (part.triangles.size() < patch.triangles.size() &&
-          std::all_of(part.triangles.begin(), part.triangles.end(),
-                      [&](std::uint32_t t) { return mark_[t] == stamp_; }))
-        patch.holds |= 1U << bit;
-    };
-    for (std::size_t k = 0; k < sets.ribbons.size(); ++k) look(sets.ribbons[k], k);
-    for (std::size_t k = i + 1; k < sets.patches.size(); ++k)
-      look(sets.patches[k], SeedSets::kPatchBit + k);
-  }
-}
-
-SeedSets SeedFinder::about(std::uint32_t facet) {
+SeedSets SeedFinder::about(std::uint32_t facet, Marks& triangles) const {
   SeedSets sets;
   add_ribbons(facet, sets);
-  add_patches(facet, sets);
-  tell_parts_of_patches(sets);
+  add_patches(facet, sets, triangles);
+  tell_parts_of_patches(sets, triangles);
   return sets;
 }
 

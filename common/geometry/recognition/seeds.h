@@ -53,7 +53,8 @@ class SeedFinder {
 
   /// Does any edge of the facet bend smoothly?
   bool bends_smoothly(std::uint32_t facet) const;
-  SeedSets about(std::uint32_t facet);
+  /// triangles: those of the mesh, for this call.
+  SeedSets about(std::uint32_t facet, Marks& triangles) const;
 
  private:
   // The longest smooth edge between two facets.
@@ -69,10 +70,9 @@ class SeedFinder {
   const Crossing* onward(std::uint32_t facet, const Vec3& along,
                          const std::vector<std::uint32_t>& been) const;
   std::vector<std::uint32_t> walk(std::uint32_t seed, Crossing step, std::uint32_t not_into) const;
-  void add_triangles(std::uint32_t facet, std::vector<std::uint32_t>& out) const;
+  std::vector<std::uint32_t> triangles_of(std::span<const std::uint32_t> row) const;
   void add_ribbons(std::uint32_t seed, SeedSets& sets) const;
-  void add_patches(std::uint32_t seed, SeedSets& sets);
-  void tell_parts_of_patches(SeedSets& sets);
+  void add_patches(std::uint32_t seed, SeedSets& sets, Marks& met) const;
 
   const TriangleMesh& mesh_;
   const Topology& topology_;
@@ -80,8 +80,6 @@ class SeedFinder {
   const RegionGrower& grower_;
   std::vector<std::size_t> begin_{0};
   std::vector<Crossing> crossings_;
-  std::vector<std::uint32_t> mark_;  // by triangle
-  std::uint32_t stamp_ = 0;
 };
 
 }  // namespace mortise

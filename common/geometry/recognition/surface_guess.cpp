@@ -19,6 +19,15 @@ Vec3 middle_of(std::span<const Vec3> points) {
   return middle / static_cast<double>(points.size());
 }
 
+// Adds v v^T, the lower half alone.
+void add_square(Mat3& sum, const Vec3& v) {
+  for (int j = 0; j < 3; ++j)
+    for (int i = j; i < 3; ++i) sum(i, j) += v[i] * v[j];
+}
+
+// A symmetric matrix of its lower half.
+Mat3 whole(const Mat3& lower) { return lower.selfadjointView<Eigen::Lower>(); }
+
 // Circle through points of a plane, algebraic least squares (Kasa): x^2 + y^2 = 2ax + 2by + c.
 struct Circle {
   double x = 0.0, y = 0.0, radius = 0.0;
@@ -60,8 +69,7 @@ bool inclined_alike(std::span<const OrientedPoint> facets, const Vec3& axis, dou
 
 std::optional<Vec3> steady_direction(std::span<const OrientedPoint> facets, const Vec3& about) {
   Mat3 spread = Mat3::Zero();
-  for (const OrientedPoint& f : facets)
-    spread += (f.normal - about) * (f.normal - about).transpose();
+  for (const OrientedPoint& f : facets) add_square(spread, f.normal - about);
   const Eigen::SelfAdjointEigenSolver<Mat3> solver(spread);
   // All normals on one line within 1e-6 rad, which is what rounded corners leave: any axis would
   // do.
@@ -76,6 +84,7 @@ std::optional<Surface> guess_cylinder(std::span<const Vec3> points,
   if (!axis || !inclined_alike(facets, *axis, 0.0)) return std::nullopt;
   const Vec3 u = axis->unitOrthogonal(), v = axis->cross(u), middle = middle_of(points);
   std::vector<Eigen::Vector2d> flat;
+  flat.reserve(points.size());
   for (const Vec3& x : points) flat.emplace_back((x - middle).dot(u), (x - middle).dot(v));
   const auto circle = circle_through(flat);
   if (!circle) return std::nullopt;
@@ -103,7 +112,7 @@ std::optional<Surface> guess_cone(std::span<const Vec3> points,
   Vec3 b = Vec3::Zero();
   const Vec3 middle = middle_of(points);
   for (const OrientedPoint& f : facets) {
-    a += f.normal * f.normal.transpose();
+    add_square(a, f.normal);
     b += f.normal * f.normal.dot(f.point - middle);
   }
   const Vec3 apex = a.ldlt().solve(b);
@@ -129,10 +138,11 @@ std::optional<Surface> guess_sphere(std::span<const Vec3> points) {
   double mean = 0.0;
   for (const Vec3& x : points) {
     const Vec3 q = (x - middle) / extent;
-    spread += q * q.transpose();
+    add_square(spread, q);
     skew += 0.5 * q.squaredNorm() * q;
     mean += q.squaredNorm() / static_cast<double>(points.size());
   }
+  spread = whole(spread);
   const double det = spread.determinant();
   if (!(det > kSingular * spread(0, 0) * spread(1, 1) * spread(2, 2))) return std::nullopt;
   const Vec3 s = spread.inverse() * skew;
@@ -157,14 +167,14 @@ std::optional<Surface> guess_torus(std::span<const Vec3> points,
   Mat3 ss = Mat3::Zero(), sw = Mat3::Zero(), ww = Mat3::Zero();
   for (const OrientedPoint& f : facets) {
     const Vec3 moment = ((f.point - middle) / extent).cross(f.normal);
-    ss += f.normal * f.normal.transpose();
-    sw += f.normal * moment.transpose();
-    ww += moment * moment.transpose();
+    add_square(ss, f.normal);
+    sw.noalias() += f.normal * moment.transpose();
+    add_square(ww, moment);
   }
-  const Eigen::FullPivLU<Mat3> lu(ss);
+  const Eigen::FullPivLU<Mat3> lu(whole(ss));
   if (!lu.isInvertible()) return std::nullopt;
   const Mat3 shift_of_turn = -lu.solve(sw);
-  const Mat3 least = ww + sw.transpose() * shift_of_turn;
+  const Mat3 least = whole(ww) + sw.transpose() * shift_of_turn;
   const Eigen::SelfAdjointEigenSolver<Mat3> solver(0.5 * (least + least.transpose()));
   const Vec3 axis = solver.eigenvectors().col(0);
   const Vec3 on_axis = middle + extent * axis.cross(Vec3(shift_of_turn * axis));
@@ -179,6 +189,7 @@ std::optional<Surface> guess_torus_about(const Surface& strip, std::span<const V
   const Vec3 middle = middle_of(points);
   const Vec3 on_axis = strip.point + (middle - strip.point).dot(strip.axis) * strip.axis;
   std::vector<Eigen::Vector2d> meridian;
+  meridian.reserve(points.size());
   for (const Vec3& x : points) {
     const double z = (x - on_axis).dot(strip.axis);
     meridian.emplace_back((x - on_axis - z * strip.axis).norm(), z);

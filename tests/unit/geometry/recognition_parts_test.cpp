@@ -180,6 +180,7 @@ TEST(MeasureRegion, DoesNotDependOnTheOrderOfTheTriangles) {
   inner.start(5.0, 0.0).line(5.0, top);
   const TriangleMesh mesh = shapes::turned_part(outer, inner, 96, 1.5 * kPi);
   Dice dice(8);
+  std::set<bool> rows;
   for (const shapes::TurnedSurface& turned : outer.surfaces) {
     std::vector<std::uint32_t> triangles;
     for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -192,6 +193,7 @@ TEST(MeasureRegion, DoesNotDependOnTheOrderOfTheTriangles) {
     const RegionMeasure in_order = measure_region(mesh, turned.surface, triangles);
     EXPECT_EQ(in_order.along_mm, extent_along_mm(mesh, turned.surface, triangles));
     EXPECT_EQ(in_order.steps, 96U);
+    EXPECT_EQ(lie_in_one_row(mesh, turned.surface, triangles), in_order.one_row);
     EXPECT_NEAR(in_order.arc_rad, 1.5 * kPi, 1e-9);
     std::shuffle(triangles.begin(), triangles.end(), dice.random());
     const RegionMeasure shuffled = measure_region(mesh, turned.surface, triangles);
@@ -200,7 +202,9 @@ TEST(MeasureRegion, DoesNotDependOnTheOrderOfTheTriangles) {
     EXPECT_EQ(shuffled.arc_rad, in_order.arc_rad);
     EXPECT_EQ(shuffled.meridian_rad, in_order.meridian_rad);
     EXPECT_EQ(shuffled.one_row, in_order.one_row);
+    rows.insert(in_order.one_row);
   }
+  EXPECT_EQ(rows.size(), 2U);
 }
 
 // The short cut of growing beside the whole test: where edges are short for the least radius, the
