@@ -35,8 +35,10 @@ struct RecognitionOptions {
   double quantum_mm = 0.0;
   bool planes = true;
   /// The slow twin: every set of seeds is fitted, also where a smaller one within it has failed,
-  /// and every facet is tried at every share. For tests.
+  /// and every facet is tried at every share, in one thread. For tests.
   bool plain = false;
+  /// At most; 0: as many as the machine runs. No more than three are used. The result is the same.
+  unsigned threads = 0;
 };
 
 /// Planes, cylinders, cones, spheres and tori of a mesh whose corners lie on the true surfaces, by
@@ -57,7 +59,8 @@ struct RecognitionOptions {
 /// A sphere is accepted only where its facets cover enough of it for the sagitta of the arc to
 /// exceed the residual clearly. Nearly flat regions are never spheres.
 ///
-/// Deterministic. About 0.1 ms of CPU for a triangle.
+/// Deterministic, at any number of threads. 10 to 20 us of CPU for a triangle of a large part, less
+/// where few faces are freeform.
 Recognition recognize_features(const Solid& solid, const RecognitionOptions& options = {});
 
 }  // namespace mortise

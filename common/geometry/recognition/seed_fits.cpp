@@ -71,6 +71,16 @@ SeedSets SeedFitter::about(std::uint32_t facet, std::span<const ByKind> known) {
   return sets;
 }
 
+void SeedFitter::ask_first(SeedSets& sets, double share) {
+  for (std::size_t kind = 0; kind < kCurvedKinds.size(); ++kind) {
+    const auto any_holds = [&](std::vector<SeedSet>& of) {
+      return std::any_of(of.begin(), of.end(),
+                         [&](SeedSet& seeds) { return holds(kind, sets, seeds, share); });
+    };
+    if (!grows_in_ribbons(kCurvedKinds[kind]) || !any_holds(sets.ribbons)) any_holds(sets.patches);
+  }
+}
+
 bool SeedFitter::holds(std::size_t kind, SeedSets& all, SeedSet& seeds, double share) {
   double& off_share = seeds.off_share[kind];
   if (off_share > share) return false;

@@ -19,7 +19,8 @@ constexpr bool grows_in_ribbons(SurfaceKind kind) {
 double extent_of(std::span<const Vec3> points);
 
 /// What a try asks of seeds before anything is grown. It depends on the mesh and on what is known
-/// of the facet alone, not on the regions found so far. Not thread safe.
+/// of the facet alone, not on the regions found so far. Not thread safe: one for each thread, over
+/// one finder and one grower, of which it only reads what never changes.
 class SeedFitter {
  public:
   /// plain: the slow twin, in which sets within others say nothing of these.
@@ -27,6 +28,9 @@ class SeedFitter {
 
   /// The sets about a facet; known: off_share of each from an earlier try, or empty.
   SeedSets about(std::uint32_t facet, std::span<const ByKind> known);
+
+  /// Asks of each kind all sets up to the first that holds, as a try does in which nothing grows.
+  void ask_first(SeedSets& sets, double share);
 
   /// Does a surface of this kind fit the seeds within the share of its size? It is in seeds.fits
   /// then. Asks smaller sets of `all` first.

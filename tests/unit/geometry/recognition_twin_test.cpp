@@ -159,6 +159,43 @@ TEST(RecognitionTwin, AsksNoSeedsInVain) {
   EXPECT_GT(features, static_cast<std::size_t>(test::effort(40)));
 }
 
+// A knob of about 1,000 facets, one half of it exact: seeds are asked ahead in other threads, of
+// facets that fit nothing and of facets that are taken meanwhile.
+TriangleMesh half_noisy_knob(std::mt19937_64& random, double noise_mm) {
+  Chain outer, inner;
+  inner.inward = true;
+  outer.start(20.0, 0.0).line(20.0, 10.0).arc(15.0, 10.0, 1.2, 12);
+  inner.start(5.0, 0.0).line(5.0, outer.points.back().z);
+  TriangleMesh mesh = turned_part(outer, inner, 32, 2.0 * kPi);
+  std::uniform_real_distribution<double> noise(-noise_mm, noise_mm);
+  for (Vec3& x : mesh.points_mm)
+    if (x.x() > 0.0) x += Vec3(noise(random), noise(random), noise(random));
+  return mesh;
+}
+
+TEST(RecognitionTwin, IsTheSameAtAnyNumberOfThreads) {
+  std::mt19937_64 random(79);
+  for (int i = 0; i < test::effort(10); ++i) {
+    const Solid solid(half_noisy_knob(random, std::array{1e-6, 1e-4, 1e-3, 5e-3, 5e-2}[i % 5]));
+    const Recognition alone = recognize_features(solid, {.threads = 1});
+    for (const unsigned threads : {2U, 3U}) {
+      const Recognition found = recognize_features(solid, {.threads = threads});
+      EXPECT_EQ(found.doubtful_rows, alone.doubtful_rows) << i;
+      EXPECT_EQ(found.doubtful_planes, alone.doubtful_planes) << i;
+      ASSERT_EQ(found.features.size(), alone.features.size()) << i;
+      for (std::size_t k = 0; k < alone.features.size(); ++k) {
+        const Feature &f = found.features[k], &g = alone.features[k];
+        EXPECT_EQ(f.name, g.name) << i;
+        EXPECT_EQ(f.triangles, g.triangles) << i << " " << f.name;
+        EXPECT_EQ(f.surface.point, g.surface.point) << i << " " << f.name;
+        EXPECT_EQ(f.surface.axis, g.surface.axis) << i << " " << f.name;
+        EXPECT_EQ(f.surface.radius_mm, g.surface.radius_mm) << i << " " << f.name;
+        EXPECT_EQ(f.residual_mm, g.residual_mm) << i << " " << f.name;
+      }
+    }
+  }
+}
+
 // What the comparison has to see: a radius that is 5 um off, and a facet taken from a neighbour.
 TEST(RecognitionTwin, ARadiusOffBy5MicrometresIsSeen) {
   const Played p =
