@@ -1,6 +1,7 @@
 #include "common/geometry/recognition/seeds.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace mortise {
@@ -71,7 +72,7 @@ bool SeedFinder::bends_smoothly(std::uint32_t facet) const { return !crossings(f
 
 // The way on from a facet that was entered across an edge of this direction.
 const SeedFinder::Crossing* SeedFinder::onward(std::uint32_t facet, const Vec3& along,
-                                               const std::vector<std::uint32_t>& been) const {
+                                               std::span<const std::uint32_t> been) const {
   const Crossing* best = nullptr;
   double best_dot = kOpposite;
   for (const Crossing& way : crossings(facet)) {
@@ -85,14 +86,16 @@ const SeedFinder::Crossing* SeedFinder::onward(std::uint32_t facet, const Vec3& 
 
 std::vector<std::uint32_t> SeedFinder::walk(std::uint32_t seed, Crossing step,
                                             std::uint32_t not_into) const {
-  std::vector<std::uint32_t> row, been{seed, not_into};
+  std::vector<std::uint32_t> row;
+  row.reserve(2 + kReach[0]);
+  row = {seed, not_into};
   for (int i = 0; i < kReach[0]; ++i) {
     row.push_back(step.facet);
-    been.push_back(step.facet);
-    const Crossing* next = onward(step.facet, step.along, been);
+    const Crossing* next = onward(step.facet, step.along, row);
     if (next == nullptr) break;
     step = *next;
   }
+  row.erase(row.begin(), row.begin() + 2);
   return row;
 }
 
@@ -113,7 +116,7 @@ void SeedFinder::add_ribbons(std::uint32_t seed, SeedSets& sets) const {
     if (started.size() >= 2 * kMostDirections) break;
     if (std::find(started.begin(), started.end(), first.facet) != started.end()) continue;
     started.push_back(first.facet);
-    const Crossing* back = onward(seed, first.along, {seed, first.facet});
+    const Crossing* back = onward(seed, first.along, std::array{seed, first.facet});
     const auto ahead = walk(seed, first, back ? back->facet : seed);
     std::vector<std::uint32_t> behind;
     if (back) {

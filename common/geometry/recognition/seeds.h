@@ -68,7 +68,7 @@ class SeedFinder {
   }
   void add_crossings_of(std::uint32_t facet);
   const Crossing* onward(std::uint32_t facet, const Vec3& along,
-                         const std::vector<std::uint32_t>& been) const;
+                         std::span<const std::uint32_t> been) const;
   std::vector<std::uint32_t> walk(std::uint32_t seed, Crossing step, std::uint32_t not_into) const;
   std::vector<std::uint32_t> triangles_of(std::span<const std::uint32_t> row) const;
   void add_ribbons(std::uint32_t seed, SeedSets& sets) const;
