@@ -173,8 +173,9 @@ void cost_rows(Report& report, bool quick) {
     solid.topology();
     Recognition found;
     const double import_s = least_wall_s([&] { (void)import_mesh(file, 1.0); });
-    const double recognition_s = least_wall_s(
-        [&] { found = recognize_features(solid, {.quantum_mm = imported->report.quantum_mm}); });
+    const double recognition_s = least_wall_s([&] {
+      found = recognize_features(solid, {.quantum_mm = imported->report.quantum_mm, .threads = 0});
+    });
     most = std::max(most, recognition_s / import_s);
     report.row({name, static_cast<long long>(solid.mesh().triangles.size()), import_s,
                 recognition_s, recognition_s / import_s,

@@ -23,7 +23,8 @@ InspectedPart inspected(Scenario::PartSpec spec, SolidPtr solid, ImportReport re
   part.spec = std::move(spec);
   part.solid = std::move(solid);
   part.report = std::move(report);
-  part.found = recognize_features(*part.solid, {.quantum_mm = part.report.quantum_mm});
+  part.found =
+      recognize_features(*part.solid, {.quantum_mm = part.report.quantum_mm, .threads = 0});
   return part;
 }
 

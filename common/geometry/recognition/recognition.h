@@ -38,7 +38,8 @@ struct RecognitionOptions {
   /// and every facet is tried at every share, in one thread. For tests.
   bool plain = false;
   /// At most; 0: as many as the machine runs. No more than three are used. The result is the same.
-  unsigned threads = 0;
+  /// Beside a session that runs one is enough.
+  unsigned threads = 1;
 };
 
 /// Planes, cylinders, cones, spheres and tori of a mesh whose corners lie on the true surfaces, by

@@ -299,12 +299,13 @@ class SceneLoader {
 
   std::optional<PartKind> make_kind(const Scenario::PartSpec& spec, std::size_t index) {
     const std::optional<LoadedMesh>& mesh = mesh_of(spec);
-    return mesh ? make_kind(spec, *mesh, index) : std::nullopt;
+    return mesh ? make_kind(spec, *mesh, index, 0) : std::nullopt;
   }
 
  public:
+  // threads: see RecognitionOptions.
   std::optional<PartKind> make_kind(const Scenario::PartSpec& spec, const LoadedMesh& mesh,
-                                    std::size_t index) {
+                                    std::size_t index, unsigned threads) {
     PartKind kind;
     kind.solid = mesh.solid;
     kind.report = mesh.report;
@@ -315,7 +316,8 @@ class SceneLoader {
     const bool recognizes =
         spec.undeclared != UndeclaredSurface::kNominal && !kind.solid->mesh().stated;
     std::shared_ptr<const Recognition> shown;
-    if (recognizes) shown = recognized(*kind.solid, {.quantum_mm = kind.report.quantum_mm});
+    if (recognizes)
+      shown = recognized(*kind.solid, {.quantum_mm = kind.report.quantum_mm, .threads = threads});
     if (!match_features(spec, mesh, shown.get(), kind)) return std::nullopt;
     if (shown) add_undeclared(*shown, kind);
     kind.band = build_band({kind.solid.get(), kind.features, spec.chord_error_mm,
@@ -483,7 +485,7 @@ Result<PartShape> shape_of_brought(const SolidPtr& solid, double quantum_mm) {
   mesh.report.quantum_mm = quantum_mm;
   const MeshProvider meshes = default_meshes();
   SceneLoader loader(scenario, meshes);
-  std::optional<PartKind> kind = loader.make_kind(spec, mesh, 0);
+  std::optional<PartKind> kind = loader.make_kind(spec, mesh, 0, 1);
   if (!kind) {
     for (const Finding& finding : loader.findings())
       if (finding.is_error) return fail(Code::kInvalidInput, finding.text);
