@@ -189,8 +189,15 @@ void cap_certain(const PairFrame& pair, const Bracket& certain, OverlapRegion& r
 }
 
 // A face may be asked beyond its edge: without a point that was checked nothing is certain.
-void keep_to_witness(OverlapRegion& region) {
-  if (!region.has_witness) region.certain_mm.lo = std::min(region.certain_mm.lo, 0.0);
+void keep_to_witnesses(std::vector<OverlapRegion>& regions) {
+  for (OverlapRegion& region : regions)
+    if (!region.has_witness) region.certain_mm.lo = std::min(region.certain_mm.lo, 0.0);
+}
+
+void sort_deepest_first(std::vector<OverlapRegion>& regions) {
+  std::stable_sort(
+      regions.begin(), regions.end(),
+      [](const OverlapRegion& a, const OverlapRegion& b) { return a.delta_mm.lo > b.delta_mm.lo; });
 }
 
 // Where meshes touch in many places, the search of what may overlap there stays open; by their
@@ -262,15 +269,12 @@ class Overlap {
     result_.contained = result_.meshes_cross && candidates.triangles[0].empty() &&
                         candidates.triangles[1].empty() && candidates.known.empty();
     if (candidates.cross) result_.meshes_cross = true;
-    std::stable_sort(result_.regions.begin(), result_.regions.end(),
-                     [](const OverlapRegion& a, const OverlapRegion& b) {
-                       return a.delta_mm.lo > b.delta_mm.lo;
-                     });
+    sort_deepest_first(result_.regions);
     if (!result_.no_inside && query_.want_delta && !query_.only_certain && !result_.regions.empty())
       tell_inner_overlap(pair_, query_,
                          {.layers = planes_->has_brackets(), .closed_form_mm = closed_form_mm_},
                          result_.regions.front(), result_.evaluations);
-    for (OverlapRegion& region : result_.regions) keep_to_witness(region);
+    if (!query_.only_certain) keep_to_witnesses(result_.regions);
     return std::move(result_);
   }
 

@@ -65,6 +65,11 @@ struct ConvexCell {
   std::vector<HalfSpace> faces;  ///< the plane ones; each touches the body
   Vec3 middle = Vec3::Zero();    ///< a point inside
 
+  /// Is there a zone between this circle and the next one?
+  bool bulges(std::size_t circle) const {
+    return std::any_of(zones.begin(), zones.end(),
+                       [&](const Zone& zone) { return zone.circle == circle; });
+  }
   /// Largest n · x over the body; of a point where it is reached. n need not be a unit vector.
   double support_mm(const Vec3& n) const;
   Vec3 farthest(const Vec3& n) const;

@@ -33,10 +33,9 @@ class RoundInWall {
               std::uint64_t& work)
       : s_(s), chord_(chord), wall_(wall), along_(along), work_(work) {
     for (int e = 0; e < chord.ends; ++e) {
-      const Pose& X = chord.X_KS[e];
-      point_[e] = X * s.point;
-      axis_[e] = X.q * s.axis;
-      for (int k = 0; k < 2; ++k) across_[e][k] = X.q * s.across[k];
+      point_[e] = chord.X_KS[e] * s.point;
+      axis_[e] = chord.X_KS[e].q * s.axis;
+      for (int k = 0; k < 2; ++k) across_[e][k] = chord.X_KS[e].q * s.across[k];
       rises_[e] = {across_[e][0].dot(wall.axis), across_[e][1].dot(wall.axis)};
       rise_[e] = std::hypot(rises_[e].c, rises_[e].s);
       for (const auto& circle : s.circles)
@@ -126,8 +125,7 @@ class RoundInWall {
   // Of the generator between two circles: where some point of it, with a rise among those given,
   // may be between the heights of the wall at some time of the span. False: nowhere.
   bool clip(std::size_t segment, const Rises& rises, double& from, double& to) const {
-    for (const ConvexCell::Zone& zone : s_.zones)
-      if (zone.circle == segment) return false;  // zones_in_wall() asks it
+    if (s_.bulges(segment)) return false;  // zones_in_wall() asks it
     const auto &p = s_.circles[segment], &q = s_.circles[segment + 1];
     const double slope = (q.r_mm - p.r_mm) / (q.z_mm - p.z_mm);
     from = kInfinity;

@@ -53,13 +53,70 @@ struct Slab {
   }
 };
 
+// That about which a part is turned.
+struct TurningAxis {
+  Vec3 point = Vec3::Zero(), along = Vec3::UnitZ();
+  double height(const Vec3& x) const { return (x - point).dot(along); }
+  double off(const Vec3& x) const { return (x - point - height(x) * along).norm(); }
+};
+
+bool is_turned(const Surface* s) {
+  return s != nullptr && (s->kind == SurfaceKind::kCylinder || s->kind == SurfaceKind::kCone ||
+                          s->kind == SurfaceKind::kSphere);
+}
+
+// That of the largest outer face, else of the largest bore; of a ball any.
+std::optional<TurningAxis> turning_axis(const CoverFaces& f) {
+  std::map<std::uint16_t, double> area;
+  for (std::uint32_t t = 0; t < f.count(); ++t) {
+    if (!is_turned(f.surface(t))) continue;
+    const Vec3 n = (f.mesh().corner(t, 1) - f.mesh().corner(t, 0))
+                       .cross(f.mesh().corner(t, 2) - f.mesh().corner(t, 0));
+    area[f.body.face_index(t)] += n.norm();
+  }
+  std::optional<TurningAxis> axis;
+  double most = 0.0;
+  const double all = f.body.solid->bvh().extent_mm * f.body.solid->bvh().extent_mm * 1e3;
+  for (const auto& [face, a] : area) {
+    const Surface& s = *f.body.band->faces[face].surface;
+    const bool has_axis = s.kind != SurfaceKind::kSphere;
+    const double weight = a + (s.inward ? 0.0 : all) + (has_axis ? 2.0 * all : 0.0);
+    if (weight <= most) continue;
+    most = weight;
+    axis = TurningAxis{s.point, s.axis};
+  }
+  return axis;
+}
+
+// The line of a round outer face, where its axis is the same along all of the part.
+std::optional<OuterLine> line_of(const TurningAxis& axis, double extent_mm, const Surface& s,
+                                 const LayerOffsets& offsets) {
+  const bool is_ball = s.kind == SurfaceKind::kSphere;
+  const double tilt_mm = is_ball ? 0.0 : s.axis.cross(axis.along).norm() * 2.0 * extent_mm;
+  const double off_mm = axis.off(s.point) + tilt_mm;
+  if (s.inward || off_mm > kSameAxis_mm) return std::nullopt;
+  OuterLine line{s.radius_mm, 0.0, {offsets[0] + off_mm, offsets[1] + off_mm}};
+  if (is_ball) {
+    line.ball_r = s.radius_mm;
+    line.at_zero = axis.height(s.point);
+  } else if (s.kind == SurfaceKind::kCone) {
+    line.slope = (s.axis.dot(axis.along) > 0.0 ? 1.0 : -1.0) * std::sin(s.half_angle_rad) /
+                 std::cos(s.half_angle_rad);
+    line.at_zero = -line.slope * axis.height(s.point);
+  }
+  return line;
+}
+
 class Turned {
  public:
   explicit Turned(const CoverFaces& faces) : f_(faces) {}
 
   Outside run() {
     Outside outside;
-    if (!find_axis() || !find_slabs()) return outside;
+    const auto axis = turning_axis(f_);
+    if (!axis) return outside;
+    axis_ = *axis;
+    if (!find_slabs()) return outside;
     for (Slab& slab : slabs_) note_points(slab);
     for (std::uint32_t t = 0; t < f_.count(); ++t)
       if (!is_of_line(t)) note_rest(t);
@@ -75,57 +132,8 @@ class Turned {
   }
 
  private:
-  static bool is_turned(const Surface* s) {
-    return s != nullptr && (s->kind == SurfaceKind::kCylinder || s->kind == SurfaceKind::kCone ||
-                            s->kind == SurfaceKind::kSphere);
-  }
-
-  // That of the largest outer face, else of the largest bore; of a ball any.
-  bool find_axis() {
-    std::map<std::uint16_t, double> area;
-    for (std::uint32_t t = 0; t < f_.count(); ++t) {
-      if (!is_turned(f_.surface(t))) continue;
-      const Vec3 n = (f_.mesh().corner(t, 1) - f_.mesh().corner(t, 0))
-                         .cross(f_.mesh().corner(t, 2) - f_.mesh().corner(t, 0));
-      area[f_.body.face_index(t)] += n.norm();
-    }
-    double most = 0.0;
-    const double all = f_.body.solid->bvh().extent_mm * f_.body.solid->bvh().extent_mm * 1e3;
-    for (const auto& [face, a] : area) {
-      const Surface& s = *f_.body.band->faces[face].surface;
-      const bool has_axis = s.kind != SurfaceKind::kSphere;
-      const double weight = a + (s.inward ? 0.0 : all) + (has_axis ? 2.0 * all : 0.0);
-      if (weight <= most) continue;
-      most = weight;
-      point_ = s.point;
-      axis_ = s.axis;
-    }
-    return most > 0.0;
-  }
-
-  double height(const Vec3& x) const { return (x - point_).dot(axis_); }
-  double off_axis(const Vec3& x) const {
-    const Vec3 d = x - point_;
-    return (d - d.dot(axis_) * axis_).norm();
-  }
-
-  // The line of a round face, where its axis is the same.
-  std::optional<OuterLine> line_of(const Surface& s, const LayerOffsets& offsets) const {
-    const double tilt = s.axis.cross(axis_).norm();
-    const double off_mm = off_axis(s.point) + tilt * 2.0 * f_.body.solid->bvh().extent_mm;
-    const bool is_ball = s.kind == SurfaceKind::kSphere;
-    if (s.inward || (is_ball ? off_axis(s.point) : off_mm) > kSameAxis_mm) return std::nullopt;
-    if (is_ball) {
-      const double off = off_axis(s.point);
-      return OuterLine{height(s.point), 0.0, {offsets[0] + off, offsets[1] + off}, s.radius_mm};
-    }
-    OuterLine line{s.radius_mm, 0.0, {offsets[0] + off_mm, offsets[1] + off_mm}};
-    if (s.kind == SurfaceKind::kCylinder) return line;
-    line.slope = (s.axis.dot(axis_) > 0.0 ? 1.0 : -1.0) * std::sin(s.half_angle_rad) /
-                 std::cos(s.half_angle_rad);
-    line.at_zero = -line.slope * height(s.point);
-    return line;
-  }
+  double height(const Vec3& x) const { return axis_.height(x); }
+  double off_axis(const Vec3& x) const { return axis_.off(x); }
 
   bool find_slabs() {
     const std::vector<SurfaceBand::Face>& band = f_.body.band->faces;
@@ -146,7 +154,8 @@ class Turned {
       const Surface* s = Body::surface_of(band[i], Layer::kUpper);
       if (!is_turned(s) || !(extent[i].lo < extent[i].hi)) continue;
       line_of_face_[i] = line_of(
-          *s, {Body::offset_of(band[i], Layer::kLower), Body::offset_of(band[i], Layer::kUpper)});
+          axis_, f_.body.solid->bvh().extent_mm, *s,
+          {Body::offset_of(band[i], Layer::kLower), Body::offset_of(band[i], Layer::kUpper)});
       if (!line_of_face_[i]) continue;
       levels.push_back(extent[i].lo);
       levels.push_back(extent[i].hi);
@@ -216,7 +225,7 @@ class Turned {
   bool is_groove(std::uint32_t t) const {
     const Surface* s = f_.surface(t);
     if (s == nullptr || s->kind != SurfaceKind::kTorus || !s->inward) return false;
-    if (off_axis(s->point) + s->axis.cross(axis_).norm() * f_.body.solid->bvh().extent_mm >
+    if (off_axis(s->point) + s->axis.cross(axis_.along).norm() * f_.body.solid->bvh().extent_mm >
         kSameAxis_mm)
       return false;
     for (int k = 0; k < 3; ++k)
@@ -290,8 +299,8 @@ class Turned {
 
   // The plane across the axis at which a cell ends; its offset by layer.
   LayerOffsets end_offsets(double z, double sign) const {
-    const Vec3 n = sign * axis_;
-    return f_.border(n, n.dot(point_) + sign * z).offsets;
+    const Vec3 n = sign * axis_.along;
+    return f_.border(n, n.dot(axis_.point) + sign * z).offsets;
   }
 
   struct Border {
@@ -373,13 +382,13 @@ class Turned {
         lines.push_back({-border.line.slope / length, 1.0 / length,
                          border.line.at_zero / length + border.line.offsets[layer]});
       }
-      if (auto cell = round_cell(point_, axis_, lines, balls))
+      if (auto cell = round_cell(axis_.point, axis_.along, lines, balls))
         outside.cells[layer].push_back(*cell);
     }
   }
 
   const CoverFaces& f_;
-  Vec3 point_ = Vec3::Zero(), axis_ = Vec3::UnitZ();
+  TurningAxis axis_;
   std::vector<std::optional<OuterLine>> line_of_face_;  // by face of the band
   std::vector<Slab> slabs_;
   std::vector<OuterLine> lines_;  // by slab

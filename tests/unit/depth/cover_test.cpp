@@ -174,15 +174,34 @@ TEST(Cover, NoBoundOfABallIsBelowAPointInBoth) {
 }
 
 // The hole of a cone is open though the chords of its rims are inside of it: whether a ball meets
-// its seat is known.
+// its seat is known, by the distance of its middle from the wall.
 TEST(Cover, WhetherABallMeetsItsSeatIsKnown) {
-  const Tally tally = judge_poses(
-      7015, test::effort(60), [](CoverLayer&) {}, seated_ball);
-  EXPECT_EQ(tally.below, 0);
-  EXPECT_EQ(tally.differ, 0);
-  EXPECT_LE(tally.poses - tally.overlap - tally.apart, test::effort(3));
-  EXPECT_GT(tally.overlap, test::effort(30));
-  EXPECT_GT(tally.apart, test::effort(30));
+  Random random(7015);
+  const auto surface_of = [](const DrawnPart& part, SurfaceKind kind) {
+    return std::find_if(
+               part.band.faces.begin(), part.band.faces.end(),
+               [&](const auto& face) { return face.surface && face.surface->kind == kind; })
+        ->surface.value();
+  };
+  int meet = 0, apart = 0;
+  for (int i = 0; i < test::effort(120); ++i) {
+    const DrawnPair pair = seated_ball(random);
+    const double away_mm = surface_of(pair.b, SurfaceKind::kCone).signed_distance_mm(pair.X_BA.p) -
+                           surface_of(pair.a, SurfaceKind::kSphere).radius_mm;
+    for (const bool largest : {false, true}) {
+      const auto offset_mm = [&](const DrawnPart& part, const char* name) {
+        return largest ? part.offsets.at(name).hi : part.offsets.at(name).lo;
+      };
+      const double truth_mm = offset_mm(pair.a, "ball") + offset_mm(pair.b, "cone") - away_mm;
+      if (std::fabs(truth_mm) < 2e-5) continue;
+      std::uint64_t work = 0;
+      const CoverPair cells(layer_of(pair.a, largest), layer_of(pair.b, largest));
+      EXPECT_EQ(cells.apart(pair.X_BA, kNothing_mm, work), truth_mm < 0.0) << i << " " << truth_mm;
+      ++(truth_mm > 0.0 ? meet : apart);
+    }
+  }
+  EXPECT_GT(meet, test::effort(30));
+  EXPECT_GT(apart, test::effort(30));
 }
 
 TEST(Cover, PlantedFaultsOfABallAreSeen) {
