@@ -327,23 +327,24 @@ class Turned {
                (line.offsets[0] < own.offsets[0] || line.offsets[1] < own.offsets[1]);
       });
     };
-    // A ball comes in again behind its middle: slabs from the first to this one must keep within.
-    const auto holds = [&](const OuterLine& ball, std::size_t last) {
+    const auto near_end = [&](std::size_t i) { return by > 0 ? slabs_[i].z0 : slabs_[i].z1; };
+    const auto far_end = [&](std::size_t i) { return by > 0 ? slabs_[i].z1 : slabs_[i].z0; };
+    // A ball comes in again behind its middle: slabs from the first to this one must keep within,
+    // by what faces are moved, but where it joins the last one.
+    const auto holds = [&](const OuterLine& ball, std::size_t last, double joint) {
       for (std::size_t i = k;; i += static_cast<std::size_t>(by)) {
         for (const double z : {slabs_[i].z0, slabs_[i].z1})
-          if (lines_[i].r(z) > ball.r(z) + f_.same_mm) return false;
+          if (z != joint && lines_[i].r(z) + 2.0 * f_.travel_mm > ball.r(z)) return false;
         if (i == last) return true;
       }
     };
-    const auto near_end = [&](std::size_t i) { return by > 0 ? slabs_[i].z0 : slabs_[i].z1; };
-    const auto far_end = [&](std::size_t i) { return by > 0 ? slabs_[i].z1 : slabs_[i].z0; };
     std::size_t i = k;
     while (by > 0 ? i + 1 < slabs_.size() : i > 0) {
       const std::size_t next = by > 0 ? i + 1 : i - 1;
       const OuterLine& line = lines_[next];
       if (line.r(near_end(next)) < least(near_end(next)) - f_.same_mm || steps_down(line)) break;
       if (line.r(far_end(next)) < least(far_end(next)) - f_.same_mm) {
-        if (line.is_ball() && !holds(line, i)) break;
+        if (line.is_ball() && !holds(line, i, near_end(next))) break;
         borders.push_back({line, 0.0, 0.0});
       }
       i = next;

@@ -100,7 +100,9 @@ inline DrawnPart domed_pin(Random& random, double r_mm) {
   const double high = uniform(random, edge + 0.1 * (0.5 * std::numbers::pi - edge), 1.45);
   const double end = std::max(high, edge + 0.02), bore = 0.5 * dome * std::cos(end);
   const double joint = dome * std::sin(edge), top = dome * std::sin(end);
-  const double bottom = joint - uniform(random, 5.0, 25.0);
+  // Sometimes the ball of the dome meets the other end of the pin, which it does not trim.
+  const bool meets_end = below(random, 3) == 0 && joint > 1.0;
+  const double bottom = meets_end ? -joint : joint - uniform(random, 5.0, 25.0);
   shapes::Chain outer, inner;
   inner.inward = true;
   outer.start(r_mm, bottom).line(r_mm, joint).arc(0.0, 0.0, end, 4 + below(random, 8));
@@ -110,9 +112,9 @@ inline DrawnPart domed_pin(Random& random, double r_mm) {
   part.round_mm = r_mm;
   part.length_mm = top - bottom;
   part.depth = [=](const Vec3& x, const OffsetOf& o) {
-    return std::min({r_mm + o("pin") - radius(x), dome + o("dome") - x.norm(),
-                     x.z() - bottom + o("lower"), top + o("upper") - x.z(),
-                     radius(x) - bore + o("bore")});
+    const double d = std::min({r_mm + o("pin") - radius(x), x.z() - bottom + o("lower"),
+                               top + o("upper") - x.z(), radius(x) - bore + o("bore")});
+    return x.z() < 0.0 ? d : std::min(d, dome + o("dome") - x.norm());
   };
   part.what = "domed pin";
   return part;

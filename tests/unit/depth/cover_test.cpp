@@ -204,6 +204,30 @@ TEST(Cover, WhetherABallMeetsItsSeatIsKnown) {
   EXPECT_GT(apart, test::effort(30));
 }
 
+// Also where the ball of a dome meets the other end of its pin, which it does not trim.
+TEST(Cover, HoldsTheRimsOfADomedPin) {
+  Random random(7016);
+  int inside = 0, outside = 0;
+  for (int i = 0; i < test::effort(100); ++i) {
+    const DrawnPart part = domed_pin(random, uniform(random, 3.0, 12.0));
+    const double bottom = part.solid->bounds().lo.z();
+    for (const bool largest : {false, true})
+      for (int k = 0; k < 200; ++k) {
+        const Vec3 u = rotation_exp(uniform(random, -3.1, 3.1) * Vec3::UnitZ()) * Vec3::UnitX();
+        const Vec3 x = (part.round_mm + uniform(random, -0.05, 0.05)) * u +
+                       (bottom + uniform(random, -0.05, 0.3)) * Vec3::UnitZ();
+        if (!(part.depth_in(x, largest) > 1e-6)) continue;
+        ++inside;
+        const std::vector<ConvexCell>& cells = layer_of(part, largest).cells;
+        outside += std::none_of(cells.begin(), cells.end(), [&](const ConvexCell& cell) {
+          return (cell.near(x) - x).norm() < 1e-9;
+        });
+      }
+  }
+  EXPECT_EQ(outside, 0) << "of " << inside;
+  EXPECT_GT(inside, test::effort(5000));
+}
+
 TEST(Cover, PlantedFaultsOfABallAreSeen) {
   const auto small_ball = [](CoverLayer& layer) {
     for (ConvexCell& cell : layer.cells)
