@@ -219,14 +219,13 @@ TriangleSeparation separation_of(const Triangle& a, const Triangle& b, bool outs
   // Most directions part them less than one before did: seen without their length.
   const auto along = [&](const Vec3& direction) {
     const double length2 = direction.squaredNorm();
+    if (!(length2 > 0.0)) return;
     const double least_mm = best.distance_mm - kSeparationRounding * size_mm;
     const auto [ahead, behind] = gaps(direction);
     const double gap = std::max(ahead, behind);
     if (std::copysign(gap * gap, gap) < std::copysign(least_mm * least_mm * length2, least_mm))
       return;
-    const double length = std::sqrt(length2);
-    if (!(length > 0.0)) return;
-    const Vec3 n = direction / length;
+    const Vec3 n = direction / std::sqrt(length2);
     const auto [ahead_mm, behind_mm] = gaps(n);
     if (ahead_mm > best.distance_mm && allowed(n)) best = {ahead_mm, n};
     if (behind_mm > best.distance_mm && allowed(-n)) best = {behind_mm, -n};
