@@ -2,15 +2,19 @@
 
 #include <algorithm>
 #include <chrono>
-#include <ctime>
+#include <condition_variable>
+#include <mutex>
 #include <string>
+#include <thread>
 #include <utility>
+#include <vector>
 
 #include "common/io/log/session_log_read.h"
 #include "common/io/scenario/brought_part.h"
 #include "common/messages/mesh_bytes.h"
 #include "common/session/world/decisions.h"
 #include "server/backlog.h"
+#include "server/scheduling.h"
 #include "server/silence.h"
 
 namespace mortise {
@@ -29,26 +33,36 @@ void hear(StandbyChannel& channel, std::deque<ToldTick>& told) {
 
 std::int64_t now_ns() { return std::chrono::nanoseconds(Clock::now().time_since_epoch()).count(); }
 
-double process_cpu_s() {
-  timespec used{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &used);
-  return static_cast<double>(used.tv_sec) + 1e-9 * static_cast<double>(used.tv_nsec);
-}
-
-/// Tells a silence how the turns of this process went.
-class Turns {
+/// Tells a silence how an ordinary thread of this process gets on: those that take what comes are
+/// ordinary, while the loop that follows runs before all others.
+class OrdinaryTurns {
  public:
-  void end(Silence& silence) {
-    const Clock::time_point now = Clock::now();
-    const double cpu_s = process_cpu_s();
-    silence.turn(std::chrono::duration<double>(now - at_).count(), cpu_s - cpu_s_);
-    at_ = now;
-    cpu_s_ = cpu_s;
+  /// Never waits for that thread: what is not told now is told by the next call.
+  void tell(Silence& silence) {
+    const std::unique_lock lock(mutex_, std::try_to_lock);
+    if (!lock) return;
+    for (const double took_s : took_s_) silence.turn(took_s);
+    took_s_.clear();
   }
 
  private:
-  Clock::time_point at_ = Clock::now();
-  double cpu_s_ = process_cpu_s();
+  // Half of what one turn counts for.
+  static constexpr std::chrono::duration<double> kTurn{0.5 * Silence::kTurnCounts_s};
+
+  void run(const std::stop_token& stop) {
+    run_as_others();
+    std::unique_lock lock(mutex_);
+    for (Clock::time_point at = Clock::now(); !stop.stop_requested();) {
+      stopped_.wait_for(lock, stop, kTurn, [] { return false; });
+      const Clock::time_point now = Clock::now();
+      took_s_.push_back(std::chrono::duration<double>(now - std::exchange(at, now)).count());
+    }
+  }
+
+  std::mutex mutex_;
+  std::condition_variable_any stopped_;
+  std::vector<double> took_s_;
+  std::jthread thread_{[this](const std::stop_token& stop) { run(stop); }};  ///< last: it uses them
 };
 
 std::string text_of(Backlog::News news, std::uint64_t backlog, std::uint64_t tick) {
@@ -186,7 +200,7 @@ Result<bool> follow(StandbyChannel& channel, std::deque<ToldTick> told, Follower
                     const std::function<bool()>& stop,
                     const std::function<void(const std::string&)>& note) {
   Silence silence;
-  Turns turns;
+  OrdinaryTurns turns;
   Backlog backlog;
   Clock::time_point counts = Clock::now();
   for (std::size_t confirmed = 0; !stop();) {
@@ -220,7 +234,8 @@ Result<bool> follow(StandbyChannel& channel, std::deque<ToldTick> told, Follower
       return fail(Code::kRuntime,
                   "another server stands by for this session, and one is enough: this one ends");
     if (takes_over) return true;
-    turns.end(silence);
+    turns.tell(silence);
+    if (!is_gone) silence.present();
     if (!may_take) channel.await_told(kTurn_ns);
   }
   if (!channel.another_stands_by()) channel.confirm({kTakenAll, follower.last_tick()});
