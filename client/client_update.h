@@ -65,7 +65,9 @@ struct ClientUpdate {
   std::vector<MeshBytes> meshes;          ///< arrived
   bool features = false;                  ///< features() is new
   bool resynced = false;                  ///< a snapshot has replaced what was known
-  bool server_lost = false;               ///< users join again by themselves when it is back
+  /// Users join again by themselves when it is back. Commands that it has not answered never will
+  /// be: they were carried out or not.
+  bool server_lost = false;
 };
 
 /// What was missed, repeated or repaired.

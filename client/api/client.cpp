@@ -90,12 +90,16 @@ struct Client::Impl {
   Status answer_to(std::uint64_t seq, const std::string& what) {
     if (seq == 0) return Error{Code::kRuntime, what + ": not joined"};
     const mortise::Reply* found = nullptr;
+    const std::uint64_t losses = client.statistics().server_losses;
     const auto has_come = [&] {
       for (const mortise::Reply& reply : replies)
         if (reply.seq == seq && reply.user == client.user_id(user)) found = &reply;
-      return found != nullptr;
+      return found != nullptr || client.statistics().server_losses != losses;
     };
     if (!wait(kAnswer_s, has_come)) return Error{Code::kLimit, what + ": the server is silent"};
+    if (found == nullptr)
+      return Error{Code::kRuntime,
+                   what + ": the server went away before it answered; see whether it was done"};
     const Status status =
         found->refusal == mortise::Refusal::kNone
             ? Status()

@@ -81,12 +81,16 @@ class ReplacedPeg : public SecondServer {
   void kill_first(Program& first, Program& second) {
     first.signal(SIGKILL);
     EXPECT_TRUE(says(second, "taken over at tick")) << second.errors();
+    all_know_that_it_is_gone();
     EXPECT_TRUE(all_in());
   }
-  std::unique_ptr<Program> go_on(std::vector<std::string> arguments) {
-    EXPECT_TRUE(wait_until([&] { return losses_ >= losses_seen_ + kClients; }))
-        << "all know that the last server is gone";
+  /// What is sent before that is sent to nobody.
+  void all_know_that_it_is_gone() {
+    EXPECT_TRUE(wait_until([&] { return losses_ >= losses_seen_ + kClients; }));
     losses_seen_ = losses_;
+  }
+  std::unique_ptr<Program> go_on(std::vector<std::string> arguments) {
+    all_know_that_it_is_gone();
     arguments.insert(arguments.begin(), {"--restore", logs()});
     auto server = start(arguments);
     EXPECT_TRUE(all_in()) << server->errors();

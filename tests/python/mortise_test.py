@@ -357,6 +357,21 @@ def test_a_live_session(tmp_path, domain):
     assert "ann" in mortise.Log(tmp_path / "s.mcap")["users"]["user"]
 
 
+def test_a_server_that_is_gone_is_said_at_once(tmp_path, domain):
+    server = subprocess.Popen([BIN / "mortise-server", SOURCE / "scenarios" / "peg_in_hole.yaml", "--session", "python", "--domain",
+                               str(domain), "--quiet", "--log", tmp_path / "s.mcap"], stdout=subprocess.DEVNULL)
+    with mortise.Client("ann", session="python", domain=domain) as ann:
+        name = next(part.name for part in ann.parts.values() if part.moving)
+        server.kill()
+        server.wait(20)
+        begun_s = time.monotonic()
+        with pytest.raises(mortise.Error, match="went away before it answered; see whether it was done"):
+            ann.grab(name)
+        assert time.monotonic() - begun_s < 4.5
+        with pytest.raises(mortise.Error, match="not joined"):
+            ann.grab(name)
+
+
 def test_every_public_thing_is_explained_and_typed():
     stub = pathlib.Path(mortise.__file__).with_name("__init__.pyi").read_text()
     for name in mortise.__all__:
