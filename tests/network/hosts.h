@@ -117,11 +117,12 @@ class Hosts : public ::testing::Test {
   bool said(const std::string& words) const {
     return standby_->errors().find(words) != std::string::npos;
   }
-  /// The first one has said so.
-  bool noted(const std::string& words) const {
+  /// What the first one has said.
+  std::string notes() const {
     const std::lock_guard lock(mutex_);
-    return notes_.find(words) != std::string::npos;
+    return notes_;
   }
+  bool noted(const std::string& words) const { return notes().find(words) != std::string::npos; }
   std::string fault() const {
     const std::lock_guard lock(mutex_);
     return fault_;

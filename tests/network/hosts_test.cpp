@@ -193,7 +193,7 @@ TEST_F(Hosts, OnlyOneStandsBy) {
   ASSERT_FALSE(HasFailure());
   std::unique_ptr<Program> third;
   link_->on_side(4, [&] { third = stand_by(4, "third"); }).join();
-  EXPECT_EQ(third->wait(kPatience_s), 1) << third->errors();
+  EXPECT_EQ(third->wait(kPatience_s), 1) << third->errors() << standby_->errors() << notes();
   EXPECT_NE(third->errors().find("another server stands by for this session"), std::string::npos)
       << third->errors();
   link_->on_side(4, [&] { third = stand_by(4, "third"); }).join();
