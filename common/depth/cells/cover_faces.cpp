@@ -9,9 +9,13 @@ namespace {
 
 // Planes whose normals differ by less are parallel.
 constexpr double kParallel = 1e-9;
-// Edges of round faces are not sharper than 60 degrees; what is drawn outwards by both faces of
-// one comes twice as far.
-constexpr double kTravelOfRound = 2.0;
+// An edge that is drawn outwards by both of its faces comes so much farther: as far as one of 60
+// degrees at least, which a mesh may hide; sharper ones are followed as far as those of plane
+// faces.
+constexpr double kTravelOfRound = 2.0, kMostTravelOfRound = 20.0;
+// Faces whose normals have a larger cosine go on smoothly: but for less than 1.2 degrees. With a
+// larger one than the second, 20 degrees, who rises from a wall may do so by less than its chords.
+constexpr double kSmoothFace = 0.9998, kNearlySmoothFace = 0.94;
 // Lengths that differ by less than this share of the part are one, but for rounding.
 constexpr double kSameLength = 1e-9;
 
@@ -23,8 +27,46 @@ CoverFaces::CoverFaces(const Body& body_of) : body(body_of), planes(body_of.plan
   for (const SurfaceBand::Face& face : body.band->faces) {
     reach_of_face_.push_back(std::max(0.0, Body::offset_range_of(face, Layer::kUpper).hi));
     most = std::max(most, reach_of_face_.back());
+    recess_mm = std::max(recess_mm, -Body::offset_of(face, Layer::kLower));
   }
-  travel_mm = std::max(kTravelOfRound * most, planes.most_travel.outward_mm);
+  travel_mm = std::max(edge_travel(most), planes.most_travel.outward_mm);
+}
+
+Vec3 CoverFaces::normal(std::uint32_t t, const Vec3& x) const {
+  const Surface* s = surface(t);
+  return s != nullptr ? s->outward_normal(x) : body.normal(t);
+}
+
+CoverFaces::Meeting CoverFaces::meeting_at(std::uint32_t t, const std::vector<bool>& points,
+                                           const Vec3& x, const Vec3& n) const {
+  const double cosine = n.dot(normal(t, x));
+  if (cosine > kSmoothFace) return Meeting::kSmooth;
+  if (cosine < kNearlySmoothFace) return Meeting::kTrimmed;
+  for (const std::uint32_t p : mesh().triangles[t])
+    if (!points[p] && n.dot(mesh().points_mm[p] - x) <= 0.0) return Meeting::kTrimmed;
+  return Meeting::kRising;
+}
+
+// Of the edges of round faces, how far any comes when its faces are moved: of a convex one both
+// outwards; along a hollow one, that is not nearly smooth, one outwards and the other inwards.
+double CoverFaces::edge_travel(double most_mm) const {
+  double travel = kTravelOfRound * most_mm;
+  for (std::uint32_t t = 0; t < count(); ++t)
+    for (int k = 0; k < 3; ++k) {
+      const std::uint32_t other = body.solid->topology().neighbor[t][k];
+      if (surface(t) == nullptr || other == Topology::kNone ||
+          body.face_index(other) == body.face_index(t))
+        continue;
+      const Vec3& x = mesh().corner(t, k);
+      const Vec3 n = normal(t, x), m = normal(other, x), across = n.cross(m);
+      const double cosine = n.dot(m), sine = across.norm();
+      if (cosine > kNearlySmoothFace) continue;
+      if (across.dot(mesh().corner(t, (k + 1) % 3) - x) > 0.0)
+        travel = std::max(travel, 2.0 * most_mm / (n + m).norm());
+      else
+        travel = std::max(travel, (most_mm + recess_mm * std::fabs(cosine)) / sine);
+    }
+  return std::min(travel, kMostTravelOfRound * std::max(most_mm, recess_mm));
 }
 
 LayerOffsets CoverFaces::offsets(std::uint32_t t) const {
@@ -84,17 +126,19 @@ CoverFaces::Border CoverFaces::border(const Vec3& n, double c_mm) const {
   for (std::uint32_t t = 0; t < count(); ++t) {
     const std::uint32_t face = planes.face_of_triangle[t];
     if (face < planes.faces.size() && border.has_face[face]) continue;
+    const bool is_trimmed = meeting(t, border.has_point, [&](const Vec3&) -> const Vec3& {
+                              return n;
+                            }) == Meeting::kTrimmed;
     double farthest = -std::numeric_limits<double>::infinity();
     for (const std::uint32_t p : mesh().triangles[t]) {
       const double out = n.dot(mesh().points_mm[p]) - c_mm;
-      if (out <= same_mm && !(border.has_point[p] && out > -same_mm))
+      if (out <= same_mm && !(is_trimmed && border.has_point[p] && out > -same_mm))
         farthest = std::max(farthest, out);
     }
     // Most are too far inside for their reach to any side; that towards n costs more.
     const double least = std::min(border.offsets[0], border.offsets[1]);
-    if (reach_mm(t) == 0.0 || farthest + reach_mm(t) <= least) continue;
+    if (farthest + reach_mm(t) <= least) continue;
     const double reach = reach_mm(t, n);
-    if (reach == 0.0) continue;
     for (double& offset : border.offsets) offset = std::max(offset, farthest + reach);
   }
   return border;

@@ -49,13 +49,32 @@ class CoverFaces {
   Border border(const Vec3& n, double c_mm) const;
 
   bool touches(std::uint32_t t, const std::vector<bool>& points) const;
+  /// How a face ends on another one, at these points. One that rises from it a little, or goes on
+  /// smoothly, is not trimmed by it.
+  enum class Meeting { kNone, kTrimmed, kSmooth, kRising };
+  /// normal_at(point): of the other face.
+  template <class NormalAt>
+  Meeting meeting(std::uint32_t t, const std::vector<bool>& points, NormalAt&& normal_at) const {
+    Meeting meeting = Meeting::kNone;
+    for (const std::uint32_t p : mesh().triangles[t]) {
+      if (!points[p]) continue;
+      const Vec3& x = mesh().points_mm[p];
+      meeting = std::max(meeting, meeting_at(t, points, x, normal_at(x)));
+    }
+    return meeting;
+  }
 
   const Body& body;
   const PlaneFaces& planes;
   double same_mm = 0.0;    ///< places nearer to each other are the same
   double travel_mm = 0.0;  ///< the largest part is nowhere farther out of the mesh
+  double recess_mm = 0.0;  ///< no face of the least part is farther inside of where it is modelled
 
  private:
+  Vec3 normal(std::uint32_t t, const Vec3& x) const;
+  Meeting meeting_at(std::uint32_t t, const std::vector<bool>& points, const Vec3& x,
+                     const Vec3& n) const;
+  double edge_travel(double most_mm) const;
   std::vector<double> reach_of_face_;
 };
 

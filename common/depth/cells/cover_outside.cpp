@@ -263,11 +263,16 @@ class Turned {
   }
 
   // Faces that do not meet the round face of a slab are not trimmed by it: moved by their own
-  // offsets they stay below the line, or it is taken farther out.
+  // offsets they stay below the line, or it is taken farther out. One that rises from it a little
+  // goes on as far as both are moved differently.
   void raise_lines() {
     for (Slab& slab : slabs_) {
       if (!slab.is_round()) continue;
+      const Surface& own = *f_.body.band->faces[slab.faces.front()].surface;
       for (std::uint32_t t = 0; t < f_.count(); ++t) {
+        if (f_.meeting(t, slab.has_point, [&](const Vec3& x) { return own.outward_normal(x); }) ==
+            CoverFaces::Meeting::kRising)
+          slab.line->offsets = larger(slab.line->offsets, f_.offsets(t));
         if (is_of_line(t) || f_.touches(t, slab.has_point)) continue;
         const Interval z = heights(t);
         if (z.hi <= slab.z0 + f_.same_mm || z.lo >= slab.z1 - f_.same_mm) continue;
@@ -334,7 +339,8 @@ class Turned {
     const auto holds = [&](const OuterLine& ball, std::size_t last, double joint) {
       for (std::size_t i = k;; i += static_cast<std::size_t>(by)) {
         for (const double z : {slabs_[i].z0, slabs_[i].z1})
-          if (z != joint && lines_[i].r(z) + 2.0 * f_.travel_mm > ball.r(z)) return false;
+          if (z != joint && ball.beyond(z, lines_[i].r(z)) > -f_.travel_mm - f_.recess_mm)
+            return false;
         if (i == last) return true;
       }
     };

@@ -45,14 +45,14 @@ struct Ball {
 };
 
 // Balls about runs of triangles, which mostly lie on one face, and how far outside of a wall one
-// must be to say nothing of its hole.
+// must be to say nothing of its hole, also where that is moved away from it.
 struct Balls {
   static constexpr std::uint32_t kRun = 16;  // chosen
 
   explicit Balls(const CoverFaces& f) : far_mm(f.travel_mm) {
     for (const SurfaceBand::Face& face : f.body.band->faces)
       far_mm = std::max(far_mm, face.deviation_mm.hi);
-    far_mm += kFarShare * f.body.solid->bvh().extent_mm;
+    far_mm += f.recess_mm + kFarShare * f.body.solid->bvh().extent_mm;
     for (std::uint32_t from = 0; from < f.count(); from += kRun) {
       const std::uint32_t to = std::min(from + kRun, f.count());
       Box box;
@@ -202,28 +202,48 @@ class Bore {
   }
   double refined(const Corners& c, int depth) const {
     const double bound = std::max(clearance(c), flat_clearance(c));
-    if (depth == 0 || bound >= f_.travel_mm) return bound;
+    if (depth == 0 || bound >= balls_.far_mm) return bound;
     double least = kInfinity;
     for (const Corners& q : quarters(c)) least = std::min(least, refined(q, depth - 1));
     return least;
   }
 
-  // False: something stands in the hole between the ends of its own face.
-  bool see(std::uint32_t t) {
-    const bool touches = f_.touches(t, own_point_);
-    const double allowed =
-        f_.same_mm + (touches ? kRimMargin * chord_mm_ : -(f_.surface(t) ? f_.bulge_mm(t) : 0.0));
-    const Corners c = corners_of(f_.mesh(), t);
-    const double clear = least_clearance(c);
-    if (clear >= -allowed) {
-      if (!touches && clear < f_.reach_mm(t))
-        for (double& offset : offsets_) offset = std::max(offset, f_.reach_mm(t) - clear);
-      return true;
-    }
-    return !wall_.is_socket && limit(c, allowed, kWallHalvings);
+  // How far all of a declared surface is outside of the wall: of a socket its distance from the
+  // middle, of a cylinder beside another one with its axis that from the axis.
+  double whole_clearance(const Surface* s) const {
+    const bool is_known =
+        s != nullptr &&
+        (wall_.is_socket ||
+         (s_.kind == SurfaceKind::kCylinder && s->kind == SurfaceKind::kCylinder &&
+          s->axis.cross(s_.axis).norm() * f_.body.solid->bvh().extent_mm <= f_.same_mm));
+    return is_known ? std::fabs(s->signed_distance_mm(s_.point)) - wall_.r_mm : -kInfinity;
   }
 
-  bool limit(const Corners& c, double allowed, int depth) {
+  void raise(double least) {
+    for (double& offset : offsets_) offset = std::max(offset, least);
+  }
+
+  // False: something stands in the hole between the ends of its own face. What is not trimmed by
+  // the wall keeps clear of it, moved by its own offset, or the wall is taken farther in.
+  bool see(std::uint32_t t) {
+    const CoverFaces::Meeting meeting =
+        f_.meeting(t, own_point_, [&](const Vec3& x) { return s_.outward_normal(x); });
+    const bool is_trimmed = meeting == CoverFaces::Meeting::kTrimmed;
+    if (meeting == CoverFaces::Meeting::kRising) offsets_ = larger(offsets_, f_.offsets(t));
+    const double allowed = f_.same_mm + (is_trimmed ? kRimMargin * chord_mm_
+                                                    : -(f_.surface(t) ? f_.bulge_mm(t) : 0.0));
+    const Corners c = corners_of(f_.mesh(), t);
+    const double clear = least_clearance(c), whole = whole_clearance(f_.surface(t));
+    if (is_trimmed && clear >= -allowed) return true;
+    double least = kInfinity;
+    if (clear >= -allowed) least = f_.reach_mm(t) - clear;
+    if (whole >= -f_.same_mm) least = std::min(least, f_.offsets(t)[1] - whole);
+    if (least < kInfinity) raise(least);
+    return least < kInfinity ||
+           (!wall_.is_socket && limit(t, c, allowed, is_trimmed, kWallHalvings));
+  }
+
+  bool limit(std::uint32_t t, const Corners& c, double allowed, bool is_trimmed, int depth) {
     const Interval z = heights(c);
     if (z.lo >= own_.hi - f_.same_mm) {
       free_.hi = std::min(free_.hi, z.lo);
@@ -233,10 +253,14 @@ class Bore {
       free_.lo = std::max(free_.lo, z.hi);
       return true;
     }
-    if (std::max(clearance(c), flat_clearance(c)) >= -allowed) return true;
+    const double clear = std::max(clearance(c), flat_clearance(c));
+    if (clear >= -allowed && (is_trimmed || depth == 0 || clear >= balls_.far_mm)) {
+      if (!is_trimmed) raise(f_.reach_mm(t) - clear);
+      return true;
+    }
     if (depth == 0) return false;
     for (const Corners& q : quarters(c))
-      if (!limit(q, allowed, depth - 1)) return false;
+      if (!limit(t, q, allowed, is_trimmed, depth - 1)) return false;
     return true;
   }
 

@@ -52,12 +52,13 @@ struct DrawnPart {
   }
 };
 
-inline DrawnPart finish(Random& random, GeneratedPart part, double widest_mm) {
+/// No offset is larger than most_mm.
+inline DrawnPart finish(Random& random, GeneratedPart part, double widest_mm, double most_mm) {
   DrawnPart drawn;
   BandInput input;
   for (const Feature& feature : part.features) {
-    const double a = uniform(random, -widest_mm, widest_mm);
-    const double b = uniform(random, -widest_mm, widest_mm);
+    const double a = uniform(random, -widest_mm, most_mm);
+    const double b = uniform(random, -widest_mm, most_mm);
     drawn.offsets[feature.name] = {std::min(a, b), std::max(a, b)};
     input.of_feature.push_back({drawn.offsets[feature.name], "drawn"});
   }
@@ -66,6 +67,9 @@ inline DrawnPart finish(Random& random, GeneratedPart part, double widest_mm) {
   input.features = part.features;
   drawn.band = build_band(input);
   return drawn;
+}
+inline DrawnPart finish(Random& random, GeneratedPart part, double widest_mm) {
+  return finish(random, std::move(part), widest_mm, widest_mm);
 }
 
 inline double box_depth(const Vec3& x, const Vec3& lo, const Vec3& hi, const OffsetOf& o) {
