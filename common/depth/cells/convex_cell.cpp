@@ -238,7 +238,8 @@ class MeridianCut {
     std::size_t i = 0;
     while (i + 2 < chain_.size() && chain_[i + 1].z_mm < z) ++i;
     const Circle &p = chain_[i], &q = chain_[i + 1];
-    return p.r_mm + (q.r_mm - p.r_mm) * (z - p.z_mm) / (q.z_mm - p.z_mm);
+    // Where the chain ends on the axis, rounding does not carry it across.
+    return std::max(0.0, p.r_mm + (q.r_mm - p.r_mm) * (z - p.z_mm) / (q.z_mm - p.z_mm));
   }
   static double of_ball(const MeridianBall& ball, double z) {
     return std::sqrt(std::max(0.0, (ball.r_mm - (z - ball.z_mm)) * (ball.r_mm + z - ball.z_mm)));

@@ -173,5 +173,18 @@ TEST(CoverHolds, PointsOfPartsWhoseFacesGoOnIntoEachOther) {
 // The test sees a wall that is 20 um off.
 TEST(CoverHolds, APlantedFaultIsSeen) { EXPECT_GT(points_of(two_seats, 0.03, 0.02).in_hole, 0); }
 
+// A cone that ends in a tip, within a ball that does not reach the tip.
+TEST(CoverHolds, NoCircleOfACellIsAcrossTheAxis) {
+  Random random(7018);
+  for (int i = 0; i < 20000; ++i) {
+    const double half = uniform(random, 0.2, 1.3), z = uniform(random, 0.1, 1.0);
+    const MeridianLine lines[] = {{std::sin(half), std::cos(half), z}, {-1.0, 0.0, 0.0}};
+    const MeridianBall balls[] = {{10.0 - uniform(random, 0.0, 0.05), 10.0}};
+    const auto cell = round_cell(Vec3::Zero(), Vec3::UnitZ(), lines, balls);
+    ASSERT_TRUE(cell.has_value());
+    for (const ConvexCell::Circle& circle : cell->circles) ASSERT_GE(circle.r_mm, 0.0) << i;
+  }
+}
+
 }  // namespace
 }  // namespace mortise
