@@ -1,5 +1,6 @@
 // A cover holds its part: each point that the drawing has in a layer is in a cell, and in no hole.
-// Parts whose faces go on into each other smoothly, or nearly so, where neither trims the other.
+// Parts whose faces go on into each other smoothly, or nearly so, where neither trims the other,
+// and such with a face that gives way beside one that does not.
 #include <gtest/gtest.h>
 
 #include "common/depth/body.h"
@@ -110,6 +111,38 @@ DrawnPart sink_on_socket(Random& random, double most_mm) {
                  });
 }
 
+// A slot with a wall that has a low step: where it gives way the wall above it stands out.
+DrawnPart stepped_slot(Random& random, double most_mm) {
+  const double half = uniform(random, 2.0, 8.0), length = uniform(random, 5.0, 20.0);
+  const double outside = half + 5.0, step = half + uniform(random, 0.002, 0.02);
+  const Loop loop = {{-outside, 0.0}, {outside, 0.0}, {outside, 8.0}, {step, 8.0},
+                     {step, 5.0},     {half, 5.0},    {half, 2.0},    {-half, 2.0},
+                     {-half, 8.0},    {-outside, 8.0}};
+  const char* names[] = {"front", "right", "top",       "above",    "ledge",
+                         "wall",  "floor", "left wall", "left top", "left"};
+  Shape shape;
+  const Ring lower = shape.ring(loop, 0.0), upper = shape.ring(loop, length);
+  for (std::size_t i = 0; i < loop.size(); ++i) {
+    const Vec2 &p = loop[i], d = loop[(i + 1) % loop.size()] - p;
+    shape.facet(lower, upper, i,
+                shape.plane(names[i], {p.x(), p.y(), 0.0}, Vec3(d.y(), -d.x(), 0.0).normalized()));
+  }
+  shape.cap(lower, {}, false, shape.plane("lower", Vec3::Zero(), -Vec3::UnitZ()));
+  shape.cap(upper, {}, true, shape.plane("upper", {0, 0, length}, Vec3::UnitZ()));
+  DrawnPart part = finish(random, *std::move(shape).finish(), 0.03, most_mm);
+  part.depth = [=](const Vec3& x, const OffsetOf& o) {
+    const double below = 2.0 + o("floor") - x.y();
+    const double left = std::min(-half + o("left wall") - x.x(), 8.0 + o("left top") - x.y());
+    const double wall = std::min(x.x() - half + o("wall"), 5.0 + o("ledge") - x.y());
+    const double right =
+        std::min(std::max(wall, x.x() - step + o("above")), 8.0 + o("top") - x.y());
+    return std::min({std::max({below, left, right}), x.y() + o("front"),
+                     outside + o("right") - x.x(), outside + o("left") + x.x(), x.z() + o("lower"),
+                     length + o("upper") - x.z()});
+  };
+  return part;
+}
+
 bool is_in(const Void& hole, const Vec3& x, double by_mm) {
   for (const HalfSpace& plane : hole.planes)
     if (plane.n.dot(x) <= plane.c_mm + by_mm) return false;
@@ -160,7 +193,7 @@ Tally points_of(DrawnPart (*draw)(Random&, double), double most_mm, double spoil
 }
 
 TEST(CoverHolds, PointsOfPartsWhoseFacesGoOnIntoEachOther) {
-  for (const auto draw : {ball_end, two_seats, rounded_rim, sink_on_socket})
+  for (const auto draw : {ball_end, two_seats, rounded_rim, sink_on_socket, stepped_slot})
     // Faces are moved either way, or none outwards.
     for (const double most_mm : {0.03, 0.0}) {
       const Tally tally = points_of(draw, most_mm, 0.0);
