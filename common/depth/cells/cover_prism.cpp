@@ -19,6 +19,8 @@ constexpr std::size_t kMostOutlinePieces = 160;
 constexpr double kParallelSides = 1e-9;
 // Of a piece with no more sides each round one is followed by so many tangents: tips of teeth.
 constexpr std::size_t kFewSides = 32, kTangents = 4;
+// Sides go on into each other smoothly whose normals have a larger cosine: but for 1.2 degrees.
+constexpr double kSmoothSides = 0.9998;
 // Cells go on into each other by so many times what any face may be off.
 constexpr double kIntoNext = 4.0;
 
@@ -40,6 +42,7 @@ class Prism {
     if (!is_whole_ || !find_outline() || !set_sides() || !rest_is_inside()) return outside;
     const std::vector<outline::Piece> pieces = outline::convex_pieces(corners_, f_.same_mm);
     if (pieces.empty() || pieces.size() > kMostOutlinePieces) return outside;
+    join_smooth();
     const LayerOffsets upper = end_offsets(1.0, height_.hi), lower = end_offsets(-1.0, -height_.lo);
     for (int layer = 0; layer < 2; ++layer) {
       const Interval along{height_.lo - lower[layer], height_.hi + upper[layer]};
@@ -141,6 +144,40 @@ class Prism {
     side.from_chord = side.found ? larger(side.from_chord, from_chord) : from_chord;
     side.found = true;
     for (const double offset : from_chord) widest_mm_ = std::max(widest_mm_, std::fabs(offset));
+  }
+
+  // Where a side goes over into another one neither trims the other.
+  void join_smooth() {
+    const std::vector<Side> own = sides_;
+    const auto is_one = [&](std::size_t i, std::size_t k) {
+      return i == k || (own[i].round != nullptr && own[i].round == own[k].round);
+    };
+    const auto normal = [&](std::size_t i, const Vec2& x) {
+      if (own[i].round != nullptr) return Vec2((x - flat(own[i].round->point)).normalized());
+      return outline::outward(corners_[i], corners_[(i + 1) % corners_.size()]);
+    };
+    const auto raise = [&](std::size_t i, const Side& other) {
+      const LayerOffsets& out = other.round != nullptr ? other.from_round : other.from_chord;
+      for (std::size_t k = 0; k < sides_.size(); ++k) {
+        if (!is_one(i, k)) continue;
+        const double bulge_mm = own[k].from_chord[0] - own[k].from_round[0];
+        sides_[k].from_round = larger(sides_[k].from_round, out);
+        sides_[k].from_chord = larger(sides_[k].from_chord, {out[0] + bulge_mm, out[1] + bulge_mm});
+      }
+    };
+    // Along flat sides it goes on to the next one.
+    const auto after = [&](std::size_t i) { return (i + 1) % own.size(); };
+    for (std::size_t i = 0; i < own.size(); ++i) {
+      const Vec2 n = normal(i, corners_[after(i)]);
+      for (std::size_t k = after(i); k != i; k = after(k)) {
+        if (n.dot(normal(k, corners_[k])) <= kSmoothSides) break;
+        if (!is_one(i, k)) {
+          raise(i, own[k]);
+          raise(k, own[i]);
+        }
+        if (own[k].round != nullptr) break;
+      }
+    }
   }
 
   // What is neither a wall nor an end is inside of the outline, and stays there however its face is

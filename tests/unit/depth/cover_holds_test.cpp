@@ -143,6 +143,42 @@ DrawnPart stepped_slot(Random& random, double most_mm) {
   return part;
 }
 
+// A bar with two round sides: its planes go over into them.
+DrawnPart round_bar(Random& random, double most_mm) {
+  const double r = uniform(random, 3.0, 12.0), half = uniform(random, 0.1, 2.0) * r;
+  const double length = uniform(random, 5.0, 20.0);
+  const int steps = 4 + below(random, 30);
+  Shape shape;
+  const int below_it = shape.plane("below", {0.0, -r, 0.0}, -Vec3::UnitY());
+  const int right = shape.cylinder("right", {half, 0.0, 0.0}, r, false);
+  const int above = shape.plane("above", {0.0, r, 0.0}, Vec3::UnitY());
+  const int left = shape.cylinder("left", {-half, 0.0, 0.0}, r, false);
+  Loop loop{{-half, -r}};
+  std::vector<int> side{below_it};
+  for (const double sign : {1.0, -1.0}) {
+    for (int i = 0; i < steps; ++i) {
+      const double a = std::numbers::pi * i / steps;
+      loop.push_back(sign * Vec2(half + r * std::sin(a), -r * std::cos(a)));
+      side.push_back(sign > 0.0 ? right : left);
+    }
+    if (sign < 0.0) break;
+    loop.push_back({half, r});
+    side.push_back(above);
+  }
+  const Ring lower = shape.ring(loop, 0.0), upper = shape.ring(loop, length);
+  for (std::size_t i = 0; i < loop.size(); ++i) shape.facet(lower, upper, i, side[i]);
+  shape.cap(lower, {}, false, shape.plane("lower", Vec3::Zero(), -Vec3::UnitZ()));
+  shape.cap(upper, {}, true, shape.plane("upper", {0, 0, length}, Vec3::UnitZ()));
+  DrawnPart part = finish(random, *std::move(shape).finish(), 0.03, most_mm);
+  part.depth = [=](const Vec3& x, const OffsetOf& o) {
+    const double ends = std::min(x.z() + o("lower"), length + o("upper") - x.z());
+    if (x.x() > half) return std::min(ends, r + o("right") - radius(x, half));
+    if (x.x() < -half) return std::min(ends, r + o("left") - radius(x, -half));
+    return std::min({ends, r + o("above") - x.y(), r + o("below") + x.y()});
+  };
+  return part;
+}
+
 bool is_in(const Void& hole, const Vec3& x, double by_mm) {
   for (const HalfSpace& plane : hole.planes)
     if (plane.n.dot(x) <= plane.c_mm + by_mm) return false;
@@ -193,7 +229,8 @@ Tally points_of(DrawnPart (*draw)(Random&, double), double most_mm, double spoil
 }
 
 TEST(CoverHolds, PointsOfPartsWhoseFacesGoOnIntoEachOther) {
-  for (const auto draw : {ball_end, two_seats, rounded_rim, sink_on_socket, stepped_slot})
+  for (const auto draw :
+       {ball_end, two_seats, rounded_rim, sink_on_socket, stepped_slot, round_bar})
     // Faces are moved either way, or none outwards.
     for (const double most_mm : {0.03, 0.0}) {
       const Tally tally = points_of(draw, most_mm, 0.0);
