@@ -52,7 +52,11 @@ struct Side {
 class Finder {
  public:
   explicit Finder(const CandidateQuery& query)
-      : query_(query), pair_(*query.pair), R_(pair_.X_KS[0].rotation()), R_abs_(R_.cwiseAbs()) {
+      : query_(query),
+        pair_(*query.pair),
+        reach_mm_(std::max(query.margin_mm, pair_.touch_mm) + pair_.rounding_mm),
+        R_(pair_.X_KS[0].rotation()),
+        R_abs_(R_.cwiseAbs()) {
     for (int i = 0; i < 2; ++i) {
       marked_[i].begin(pair_.bodies[i].mesh->triangles.size());
       if (query_.closed_forms && !pair_.trivial && has_surfaces(pair_.bodies[i]))
@@ -97,11 +101,10 @@ class Finder {
 
   bool apart(const Side& a, const Side& b) const {
     const Vec3 d_B = pair_.X_KS[0] * a.center - b.center;
-    const double m = query_.margin_mm + pair_.rounding_mm;
     const Vec3 reach_B = R_abs_ * a.half + b.half;
-    if (((d_B.cwiseAbs() - reach_B).array() > m).any()) return true;
+    if (((d_B.cwiseAbs() - reach_B).array() > reach_mm_).any()) return true;
     const Vec3 reach_A = R_abs_.transpose() * b.half + a.half;
-    return (((R_.transpose() * d_B).cwiseAbs() - reach_A).array() > m).any();
+    return (((R_.transpose() * d_B).cwiseAbs() - reach_A).array() > reach_mm_).any();
   }
 
   void visit(const Side& a, const Side& b) {
@@ -188,7 +191,6 @@ class Finder {
     const Bvh& bvh_b = pair_.bodies[1].solid->bvh();
     const Bvh::Leaf& leaf_a = bvh_a.leaves[~a];
     const Bvh::Leaf& leaf_b = bvh_b.leaves[~b];
-    const double m = query_.margin_mm + pair_.rounding_mm;
     for (std::uint32_t i = leaf_a.first; i < leaf_a.first + leaf_a.count; ++i) {
       const std::uint32_t ta = bvh_a.triangle_order[i];
       Triangle ca;
@@ -197,7 +199,7 @@ class Finder {
         ca[k] = pair_.X_KS[0] * pair_.bodies[0].mesh->corner(ta, k);
         box.add(ca[k]);
       }
-      const Box grown = box.grown(m);
+      const Box grown = box.grown(reach_mm_);
       for (std::uint32_t j = leaf_b.first; j < leaf_b.first + leaf_b.count; ++j) {
         const std::uint32_t tb = bvh_b.triangle_order[j];
         const Mark most = query_.want_meetings ? Mark::kCrossing : Mark::kNear;
@@ -214,7 +216,7 @@ class Finder {
           const Meeting meeting = meeting_of(ca, cb, pair_.touch_mm);
           if (meeting == Meeting::kApart) continue;
           if (meeting == Meeting::kCrossing) mark = Mark::kCrossing;
-        } else if (beyond_plane(ca, cb, m) || beyond_plane(cb, ca, m)) {
+        } else if (beyond_plane(ca, cb, reach_mm_) || beyond_plane(cb, ca, reach_mm_)) {
           continue;
         }
         if (Slot* slot = known_of(pair_.bodies[0].face_index(ta), pair_.bodies[1].face_index(tb))) {
@@ -279,6 +281,7 @@ class Finder {
 
   const CandidateQuery& query_;
   const PairFrame& pair_;
+  const double reach_mm_;  // of boxes and triangles of both parts
   const Mat3 R_, R_abs_;
   // Null where no face has a surface.
   const std::vector<std::array<std::int32_t, Bvh::kWidth>>* faces_[2] = {nullptr, nullptr};

@@ -46,8 +46,10 @@ InBoreBound in_bore_bound(const PairFrame& pair, std::uint16_t face_a, std::uint
                           double margin_mm);
 
 /// Triangles of either part that are within the margin of the other part's boxes and planes: a
-/// superset of those within the margin. Pairs of declared faces with a closed form that is tight,
-/// or that shows that they cannot interfere, are not descended into.
+/// superset of those within the margin, and of those that touch: a shell none of whose triangles is
+/// among them is inside or outside of the other part by more than touch. Pairs of declared faces
+/// with a closed form that is tight, or that shows that they cannot interfere, are not descended
+/// into.
 Candidates find_candidate_triangles(const CandidateQuery& query);
 
 /// What the closed forms of the candidates say, for proofs, and what is known of round faces in

@@ -49,6 +49,23 @@ TEST(InnerOverlap, OneWithinTheOther) {
                  z <= 15 ? 25.0 - z : 0.0);
 }
 
+// The ends of the core are those of the block but for what files round, on either side of what
+// counts as touching: no triangle of one crosses the other, and the first one is not deep inside.
+TEST(InnerOverlap, OneWithinTheOtherFromEndToEnd) {
+  for (const double short_mm : {0.0, 1e-9, 1e-7, 5e-7, 0.97e-6, 1e-6, 1.1e-6, 1e-5, -1e-9, -5e-7})
+    for (const double aside_mm : {0.0, 14.5})
+      for (int along = 0; along < 3; ++along) {
+        SCOPED_TRACE(std::to_string(1e6 * short_mm) + " nm along " + std::to_string(along));
+        Vec3 half(1, 1, 1), middle(0, 0, 0);
+        half[along] = 20 - short_mm;
+        middle[(along + 1) % 3] = aside_mm;
+        Case c{solid(box({20, 20, 20})), solid(box(half, middle))};
+        expect_delta(c, 21.0 - aside_mm);
+        c.refinement = Refinement::kDecided;
+        EXPECT_EQ(worst_class(overlap_of(c)), CollisionClass::kReal);
+      }
+}
+
 // To ask for the nearest of its own triangles at the middle of a ball looks at all of them.
 TEST(InnerOverlap, BallsThatTouchAreNotAskedInTheirOwnMiddles) {
   const SolidPtr ball = solid(sphere(10.0));
