@@ -1,5 +1,6 @@
 #include "common/evaluation/explain.h"
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <optional>
@@ -7,6 +8,7 @@
 
 #include "common/evaluation/open_bracket.h"
 #include "common/evaluation/threshold_text.h"
+#include "common/geometry/plane_faces.h"
 #include "common/messages/length_text.h"
 #include "common/messages/names.h"
 
@@ -187,18 +189,14 @@ std::string thresholds_part(const ExplainInput& in) {
   return text;
 }
 
-// Does the mesh error of a face come of its file's rounding alone?
-bool rounding_only(const SurfaceBand::Face* face) {
-  return face != nullptr && !face->surface && face->tolerance_source.empty() &&
-         (face->grade == DeviationGrade::kNominal || face->grade == DeviationGrade::kPlanar);
-}
-
-// Nothing is known but the meshes, and their corners are no closer than that.
+// Nothing is known but the meshes, and their corners are no closer than that: at an edge by as many
+// times more as it travels.
 bool within_rounding(const ExplainInput& in) {
+  const std::optional<double> rounding_mm = rounding_of_planes_mm(in);
   return in.collision_class == CollisionClass::kPotential && !in.no_inside && !in.at_crack &&
-         in.grade != DeviationGrade::kEstimated && tolerance_source(in).text.empty() &&
-         in.thresholds.real_above_mm > 0.0 && in.delta_mm.lo <= in.thresholds.real_above_mm &&
-         rounding_only(in.face_a) && rounding_only(in.face_b);
+         rounding_mm && tolerance_source(in).text.empty() && in.thresholds.real_above_mm > 0.0 &&
+         in.delta_mm.lo <=
+             std::min(in.thresholds.real_above_mm, PlaneFaces::kMostTravel * *rounding_mm);
 }
 
 // What the verdict rests on where that is less than a declared surface.

@@ -54,6 +54,25 @@ TEST(Explain, TheChordsOfADeclaredFaceAreNoRounding) {
   EXPECT_NE(explain(in).find("mesh error 48.2 µm"), std::string::npos) << explain(in);
 }
 
+// A search that ends before it knows what is certain shows no rounding.
+TEST(Explain, OnlyWhatRoundingCoversIsWithinIt) {
+  SurfaceBand::Face flat;
+  flat.grade = DeviationGrade::kPlanar;
+  flat.deviation_mm = {-1e-6, 1e-6};
+  ExplainInput in;
+  in.collision_class = CollisionClass::kPotential;
+  in.grade = DeviationGrade::kPlanar;
+  in.face_a = in.face_b = &flat;
+  const auto told = [&](Interval delta_mm, double real_above_mm) {
+    in.delta_mm = delta_mm;
+    in.thresholds = {-1.0, real_above_mm};
+    return explain(in).find("within the rounding of the files") != std::string::npos;
+  };
+  EXPECT_TRUE(told({1e-6, 1.1e-6}, 2e-6));
+  EXPECT_TRUE(told({3e-5, 3e-5}, 4e-5)) << "at a sharp edge";
+  EXPECT_FALSE(told({0.265, 0.318}, 0.265));
+}
+
 TEST(Explain, OtherSentences) {
   ExplainInput in;
   in.collision_class = CollisionClass::kReal;
