@@ -7,6 +7,7 @@
 #include <queue>
 #include <vector>
 
+#include "common/depth/answer/convex_overlap.h"
 #include "common/geometry/signed_distance.h"
 
 namespace mortise {
@@ -291,8 +292,9 @@ double inner_overlap_brute_force(const PairFrame& pair, double step_mm) {
 double certain_depth_inside_mm(const OverlapQuery& query, const Vec3& point_W, double depth_mm,
                                std::uint64_t work_cap, std::uint64_t& evaluations) {
   const PairFrame frame(query);
-  const auto inner =
-      find_inner_overlap(frame, {std::span(&point_W, 1), depth_mm}, work_cap, evaluations);
+  auto inner = convex_overlap(frame, point_W, query.accuracy_mm, evaluations);
+  if (!inner)
+    inner = find_inner_overlap(frame, {std::span(&point_W, 1), depth_mm}, work_cap, evaluations);
   return inner ? std::max(depth_mm, inner->depth_mm.lo - frame.reach_mm(Layer::kLower)) : depth_mm;
 }
 

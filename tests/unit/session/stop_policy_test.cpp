@@ -163,6 +163,18 @@ TEST_F(StopPolicy, APartThatLiesDeepInAnotherComesOut) {
   EXPECT_TRUE(snapshot_of(session.world).open_clashes.empty());
 }
 
+// A bar that ends with the block and in its middle: its end is deepest below the surface when it
+// passes the middle, while both together get less deep all the way.
+TEST_F(StopPolicy, ABarThatEndsInTheMiddleComesOut) {
+  session.add("block", cube_mesh(37.9), at(0, 0, 0), false);
+  const float half = 3.24F, end = 18.95F;  // as a file holds them
+  const PartId bar = session.add("bar", box_mesh(Vec3(-half, -half, -half), Vec3(half, half, end)),
+                                 at(0, 0, 0), true);
+  session.grab(ada, bar);
+  for (int i = 0; i < 80; ++i) tick({session.push(ada, bar, Vec3(0, 0, 57.0 / 180))});
+  EXPECT_GT(session.pose(bar).p.z(), 25.0);
+}
+
 TEST_F(StopPolicy, TwoMoversCannotSwapPlaces) {
   const PartId p = peg(-5);
   const PartId q = session.add("pin", cube_mesh(2), at(5, 0, 0), true);
