@@ -24,14 +24,27 @@ bool says_nothing(const SurfaceBand& band, const SurfaceBand::Face& face) {
          std::fabs(face.deviation_mm.hi) <= nothing_mm && face.tolerance_mm == Interval{};
 }
 
+// How far a corner is off across any facet of the mesh when each of its coordinates is off by one:
+// 1 where all of them face along an axis, at most the root of 3.
+double rounding_across(const TriangleMesh& mesh) {
+  double most = 1.0;
+  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
+    const Vec3& a = mesh.corner(t, 0);
+    const Vec3 n = (mesh.corner(t, 1) - a).cross(mesh.corner(t, 2) - a);
+    if (const double area = n.norm(); area > 0.0) most = std::max(most, n.lpNorm<1>() / area);
+  }
+  return most;
+}
+
 // A corner of the mesh is off by the rounding of its file. A declared surface is known apart from
 // the corners; a recognized one was fitted to them.
-void add_rounding(SurfaceBand& band, double quantum_mm, std::span<const Feature> features) {
+void add_rounding(SurfaceBand& band, const BandInput& input) {
+  if (!(input.quantum_mm > 0.0)) return;
+  const double quantum_mm = input.quantum_mm * rounding_across(input.solid->mesh());
   band.quantum_mm = quantum_mm;
-  if (!(quantum_mm > 0.0)) return;
   for (SurfaceBand::Face& face : band.faces) {
-    if (face.feature >= 0 &&
-        features[static_cast<std::size_t>(face.feature)].grade == DeviationGrade::kDeclaredFeature)
+    if (face.feature >= 0 && input.features[static_cast<std::size_t>(face.feature)].grade ==
+                                 DeviationGrade::kDeclaredFeature)
       continue;
     face.deviation_mm = face.deviation_mm + Interval{-quantum_mm, quantum_mm};
     if (face.surface) face.residual_mm += quantum_mm;
@@ -214,7 +227,7 @@ SurfaceBand build_band(const BandInput& input) {
   split_off_freeform(band, input.freeform);
   if (chord) split_rest_by_shape(band, *input.solid, *input.chord_error_mm);
   if (estimate) split_rest_by_estimate(band, *input.solid, input.features, input.quantum_mm);
-  add_rounding(band, input.quantum_mm, input.features);
+  add_rounding(band, input);
   return with_statements(band, *input.solid, input.rest, input.of_feature);
 }
 

@@ -18,7 +18,7 @@ struct BandInput {
   FaceStatement rest;                     ///< every face without a statement of its own
   std::vector<FaceStatement> of_feature;  ///< by feature
   bool estimate = false;  ///< the rest by estimate (grade kEstimated); a chord error goes before it
-  double quantum_mm = 0.0;  ///< rounding of the file's coordinates (README, section 1)
+  double quantum_mm = 0.0;  ///< rounding of each coordinate in the file (README, section 1)
   /// Of the rest: triangles whose deviation was measured (grade kEstimated); of no feature.
   std::span<const FreeformFace> freeform = {};
 };

@@ -57,7 +57,8 @@ struct SurfaceBand {
   /// Largest outward offset of any face, >= 0 for the band in which near pairs must be examined
   /// (mm).
   double largest_offset_mm = 0.0;
-  /// Rounding of the coordinates of the part's file: part of every deviation above.
+  /// How far corners are off across any facet for the rounding of the part's file: part of every
+  /// deviation above.
   double quantum_mm = 0.0;
   /// Convex edges and corners travel farther than their faces (sharp zones, see tips.h): how far
   /// out of the mesh, mm. 0: none does.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <random>
 
 #include "common/ccd/distance.h"
 #include "common/depth/cells/sharp_window.h"
@@ -251,6 +252,38 @@ SurfaceBand recognized_of_file(const SolidPtr& solid) {
   input.estimate = true;
   input.quantum_mm = 2e-6;
   return build_band(input);
+}
+
+// Each coordinate is off by half a step, so a corner is off across a face askew by up to 1.73 of
+// it.
+TEST(PlanePair, WhatTouchesAskewIsNotRealByTheRoundingOfItsFile) {
+  constexpr double kQuantum_mm = 5e-4;
+  std::mt19937_64 random(61);
+  std::uniform_real_distribution<double> any(-1.0, 1.0);
+  for (int i = 0; i < 10; ++i) {
+    Pose X;
+    X.q = Quat(any(random), any(random), any(random), any(random)).normalized();
+    // Both files were rounded towards the other part.
+    const Vec3 off = kQuantum_mm * (X.q * Vec3::UnitZ()).array().sign();
+    const auto of_file = [](const SolidPtr& solid) {
+      BandInput input;
+      input.solid = solid.get();
+      input.quantum_mm = kQuantum_mm;
+      return build_band(input);
+    };
+    OverlapCase c;
+    X.p = off;
+    c.a = turned(block({-20, -20, -10}, {20, 20, 0}), X);
+    X.p = -off;
+    c.b = turned(block({-7, -5, 0}, {8, 6, 9}), X);
+    c.band_a = of_file(c.a);
+    c.band_b = of_file(c.b);
+    EXPECT_NE(agreed_class(c), CollisionClass::kReal) << i;
+    X.p *= 1.01;
+    c.b = turned(block({-7, -5, 0}, {8, 6, 9}), X);
+    c.band_b = of_file(c.b);
+    EXPECT_NE(agreed_class(c), CollisionClass::kNone) << i;
+  }
 }
 
 // A sharp edge travels farther than its faces, also by the rounding of a file.
