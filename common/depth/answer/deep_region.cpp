@@ -113,6 +113,10 @@ void tell_inner_overlap(const PairFrame& pair, const OverlapQuery& query,
                                evaluations);
   if (!inner) return;
   const double at_surface_mm = region.delta_mm.lo;
+  if (!inner->grows) {
+    region.delta_mm.hi = std::min(region.delta_mm.hi, std::max(inner->depth_mm.hi, at_surface_mm));
+    return;
+  }
   Interval delta{std::max(inner->depth_mm.lo, at_surface_mm),
                  std::max(inner->depth_mm.hi, at_surface_mm)};
   if (region.closed_form && delta.lo <= before.closed_form_mm)

@@ -14,6 +14,7 @@ struct InnerOverlap {
   Interval depth_mm;  ///< lo is reached at point_W; hi is proven, for the meshes
   Vec3 point_W = Vec3::Zero();
   double in_either_mm = 0.0;  ///< the smaller of the two depths at point_W
+  bool grows = true;          ///< false: no point is deeper than the start, which is proven
 };
 
 /// Where the search begins: points of the overlap, and how deep the deepest of them is, at least.
@@ -32,8 +33,8 @@ struct InnerStart {
   double expected_mm = -1.0;
 };
 
-/// None where no point is found at which the overlap is larger than at the start: there the overlap
-/// of the surfaces is that of the parts (README, section 1). Both parts need an inside. work_cap:
+/// None where no point is found at which the overlap is larger than at the start, and it is not
+/// proven that there is none (README, section 1). Both parts need an inside. work_cap:
 /// evaluations, where the bracket stays wide; each is one nearest point. Adds to `evaluations`.
 std::optional<InnerOverlap> find_inner_overlap(const PairFrame& pair, const InnerStart& start,
                                                std::uint64_t work_cap, std::uint64_t& evaluations);
