@@ -58,11 +58,10 @@ struct CertainPlace {
 /// One connected component of the overlap (or of the near band where only offsets can make the
 /// parts meet). World frame. The brackets:
 /// - delta_mm: overlap of the meshes, -min(sd_A + sd_B) over the region; minus the distance of
-/// parts
-///   that are apart. Of points of the surfaces; in the deepest region of inner points, too, where
-///   one is found that is deeper: with kFull everywhere, with kDecided where the surfaces show that
-///   the parts lie deep in each other. hi is proven of inner points where one is deeper, and of
-///   convex parts (README, section 1).
+///   parts that are apart. Of points of the surfaces; in the deepest region of inner points, too,
+///   where one is found that is deeper: with kFull everywhere, with kDecided where the surfaces
+///   show that the parts lie deep in each other. hi is proven of inner points where one is deeper,
+///   of convex parts, and with kFull where the search comes to its end (README, section 1).
 /// - certain_mm: sup over pairs of faces of (overlap + lower offsets). > 0 means that every
 ///   admissible pair of real surfaces interferes (README, section 3).
 /// - possible_mm: the same with upper offsets. <= 0 means that none does.
