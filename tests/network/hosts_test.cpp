@@ -188,58 +188,83 @@ TEST_F(Hosts, AFirstThatWasCutOffHasSaidNothingThatIsLost) {
 }
 
 /// A further one that stands by on a host of its own: only one may lead when the first is gone.
-TEST_F(Hosts, OnlyOneStandsBy) {
-  come_in(false);
-  ASSERT_FALSE(HasFailure());
-  std::unique_ptr<Program> third;
-  link_->on_side(4, [&] { third = stand_by(4, "third"); }).join();
-  EXPECT_EQ(third->wait(kPatience_s), 1) << third->errors() << standby_->errors() << notes();
-  EXPECT_NE(third->errors().find("another server stands by for this session"), std::string::npos)
-      << third->errors();
-  link_->on_side(4, [&] { third = stand_by(4, "third"); }).join();
-  ASSERT_TRUE(until(
-      kPatience_s, [&] { return third->errors().find("in step") != std::string::npos; }, [] {}))
-      << third->errors();
-  link_->cut({kServerSide});  // both of them see it gone
-  EXPECT_EQ(third->wait(kPatience_s), 1);
-  EXPECT_EQ(third->errors().find("taken over"), std::string::npos) << third->errors();
-  EXPECT_TRUE(until(
-      kPatience_s, [&] { return said("taken over"); }, [] {}))
-      << standby_->errors();
-  sleep_s(1.0);  // and users follow it
-  leave();
-  for (const Hand& hand : hands_) EXPECT_EQ(hand.changes, 1);
-  standby_->signal(SIGTERM);
-  EXPECT_EQ(standby_->wait(kPatience_s), 0) << standby_->errors();
-  EXPECT_EQ(lost(logs_to_restore(logs_, "default").at(0).string()), 0u);
-}
+class ThirdHost : public Hosts {
+ public:
+  ThirdHost() { SetUp(); }
+  ~ThirdHost() override { TearDown(); }
+  void TestBody() override {}
+  bool play() {
+    come_in(false);
+    if (HasFailure()) return true;
+    std::unique_ptr<Program> third;
+    link_->on_side(4, [&] { third = stand_by(4, "third"); }).join();
+    const bool ends = until(
+        kPatience_s, [&] { return !third->running() || said("taken over"); }, [] {});
+    if (said("taken over")) return false;
+    EXPECT_TRUE(ends) << third->errors();
+    EXPECT_EQ(third->wait(kPatience_s), 1);
+    EXPECT_NE(third->errors().find("another server stands by for this session"), std::string::npos)
+        << third->errors();
+    link_->on_side(4, [&] { third = stand_by(4, "third"); }).join();
+    const bool in_step = until(
+        kPatience_s, [&] { return third->errors().find("in step") != std::string::npos; }, [] {});
+    if (said("taken over")) return false;
+    EXPECT_TRUE(in_step) << third->errors();
+    link_->cut({kServerSide});  // both of them see it gone
+    EXPECT_EQ(third->wait(kPatience_s), 1) << third->errors();
+    EXPECT_EQ(third->errors().find("taken over"), std::string::npos) << third->errors();
+    EXPECT_TRUE(until(
+        kPatience_s, [&] { return said("taken over"); }, [] {}))
+        << standby_->errors();
+    sleep_s(1.0);  // and users follow it
+    leave();
+    for (const Hand& hand : hands_) EXPECT_EQ(hand.changes, 1);
+    standby_->signal(SIGTERM);
+    EXPECT_EQ(standby_->wait(kPatience_s), 0) << standby_->errors();
+    EXPECT_EQ(lost(logs_to_restore(logs_, "default").at(0).string()), 0u);
+    return true;
+  }
+};
 
-TEST_F(Hosts, ASessionThatIsDrainedGoesOnOnTheOtherHost) {
-  come_in();
-  ASSERT_FALSE(HasFailure());
-  using Places = std::map<std::string, std::string>;
-  const std::string first = LossyLink::address(kServerSide);
-  const std::string second = LossyLink::address(kStandbySide);
-  const auto becomes = [&](const Places& places) {
-    return until(
-        kPatience_s, [&] { return directory() == places; }, [] {});
-  };
-  EXPECT_TRUE(becomes({{first, "leads"}, {second, "stands by"}}));
-  drain_ = true;
-  server_.join();
-  EXPECT_TRUE(handed_over_) << drained_;
-  std::printf("%s\n", drained_.c_str());
-  EXPECT_TRUE(becomes({{second, "leads"}}));
-  leave();
-  for (const Hand& hand : hands_) EXPECT_EQ(hand.changes, 1);
-  EXPECT_TRUE(otto_.is_in());  // who knows both hosts by one name
-  for (const auto& [id, part] : hands_[0].person.client->parts())
-    EXPECT_TRUE(identical(otto_.client->parts().at(id).info.X_WP, part.info.X_WP))
-        << part.info.name;
-  standby_->signal(SIGTERM);
-  EXPECT_EQ(standby_->wait(kPatience_s), 0) << standby_->errors();
-  EXPECT_EQ(lost(logs_to_restore(logs_, "default").at(0).string()), 0u);
-}
+TEST(HostsOfThree, OnlyOneStandsBy) { play_rounds<ThirdHost>(); }
+
+class DrainedHost : public Hosts {
+ public:
+  DrainedHost() { SetUp(); }
+  ~DrainedHost() override { TearDown(); }
+  void TestBody() override {}
+  bool play() {
+    come_in();
+    if (HasFailure()) return true;
+    using Places = std::map<std::string, std::string>;
+    const std::string first = LossyLink::address(kServerSide);
+    const std::string second = LossyLink::address(kStandbySide);
+    const auto becomes = [&](const Places& places) {
+      return until(
+          kPatience_s, [&] { return directory() == places || superseded_; }, [] {});
+    };
+    const bool both = becomes({{first, "leads"}, {second, "stands by"}});
+    drain_ = true;
+    server_.join();
+    if (superseded_) return false;
+    EXPECT_TRUE(both);
+    EXPECT_TRUE(handed_over_) << drained_;
+    std::printf("%s\n", drained_.c_str());
+    EXPECT_TRUE(becomes({{second, "leads"}}));
+    leave();
+    for (const Hand& hand : hands_) EXPECT_EQ(hand.changes, 1);
+    EXPECT_TRUE(otto_.is_in());  // who knows both hosts by one name
+    for (const auto& [id, part] : hands_[0].person.client->parts())
+      EXPECT_TRUE(identical(otto_.client->parts().at(id).info.X_WP, part.info.X_WP))
+          << part.info.name;
+    standby_->signal(SIGTERM);
+    EXPECT_EQ(standby_->wait(kPatience_s), 0) << standby_->errors();
+    EXPECT_EQ(lost(logs_to_restore(logs_, "default").at(0).string()), 0u);
+    return true;
+  }
+};
+
+TEST(HostsDrained, ASessionGoesOnOnTheOtherHost) { play_rounds<DrainedHost>(); }
 
 }  // namespace
 }  // namespace mortise::test
