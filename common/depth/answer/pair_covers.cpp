@@ -72,6 +72,7 @@ std::optional<Sample> PairCovers::deepest(Layer layer) {
   std::optional<Sample>& found = deepest_[index_of(layer)];
   if (found || apart(layer)) return found;
   const CoverOverlap& overlap = overlap_of(layer);
+  if (overlap.places_S.empty()) return found;
   const int role = overlap.keeper.role;
   const Body &s = pair_.s(role), &k = pair_.k(role);
   std::optional<Sample> off_mesh;
