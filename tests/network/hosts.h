@@ -383,6 +383,15 @@ class Hosts : public ::testing::Test {
   std::atomic<int> ready_{0};
 };
 
+/// Hosts for one round of a test, from its constructor to its end; see play_rounds().
+template <class Of = Hosts>
+class RoundOf : public Of {
+ public:
+  RoundOf() { Of::SetUp(); }
+  ~RoundOf() override { Of::TearDown(); }
+  void TestBody() override {}
+};
+
 /// A round that says nothing where other work of this machine kept designers from the first server,
 /// which did not hear most of them then, or that server from its standby, which took over too soon:
 /// its play() says false, and three are played at most.

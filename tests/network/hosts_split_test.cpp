@@ -90,11 +90,8 @@ TEST_F(SplitHosts, OfTwoHalvesTheOneThatStoodByLeadsAndNobodySeesTwoTruths) {
   expect_one_truth(logs_to_restore(logs_, "default").at(0).string(), far(), 1, near(), 1);
 }
 
-class KeptMostHosts : public SplitHosts {
+class KeptMostHosts : public RoundOf<SplitHosts> {
  public:
-  KeptMostHosts() { SetUp(); }
-  ~KeptMostHosts() override { TearDown(); }
-  void TestBody() override {}
   bool play() {
     come_in();
     if (HasFailure()) return true;

@@ -131,11 +131,8 @@ TEST_F(DemoAcrossHosts, SoakAllSeeWhatTheLogSays) {
 }
 
 /// A standby that is cut off takes over, as it must. It has nobody, and ends when it is met again.
-class CutOffStandby : public Hosts {
+class CutOffStandby : public RoundOf<> {
  public:
-  CutOffStandby() { SetUp(); }
-  ~CutOffStandby() override { TearDown(); }
-  void TestBody() override {}
   /// `late`: it takes over when the first one has gone on alone already.
   bool play(bool late) {
     come_in();
@@ -188,11 +185,8 @@ TEST_F(Hosts, AFirstThatWasCutOffHasSaidNothingThatIsLost) {
 }
 
 /// A further one that stands by on a host of its own: only one may lead when the first is gone.
-class ThirdHost : public Hosts {
+class ThirdHost : public RoundOf<> {
  public:
-  ThirdHost() { SetUp(); }
-  ~ThirdHost() override { TearDown(); }
-  void TestBody() override {}
   bool play() {
     come_in(false);
     if (HasFailure()) return true;
@@ -228,11 +222,8 @@ class ThirdHost : public Hosts {
 
 TEST(HostsOfThree, OnlyOneStandsBy) { play_rounds<ThirdHost>(); }
 
-class DrainedHost : public Hosts {
+class DrainedHost : public RoundOf<> {
  public:
-  DrainedHost() { SetUp(); }
-  ~DrainedHost() override { TearDown(); }
-  void TestBody() override {}
   bool play() {
     come_in();
     if (HasFailure()) return true;
