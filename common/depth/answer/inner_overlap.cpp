@@ -27,7 +27,7 @@ constexpr std::uint64_t kMostInVain = 600;
 // Work in which something deeper than expected is found.
 constexpr std::uint64_t kMostAsExpected = 8000;
 // A cut that leaves more than this share of what its box exceeds the best by hardly helps. With 0.9
-// a key in its slot is not closed, with 0.5 a ball in a block takes twice the work.
+// a key in its slot is not closed.
 constexpr double kHardly = 0.75;
 // In full it begins anew after so much work, and cuts across any axis: about balls cubes mostly
 // come to an end within 12,000, along faces hardly ever.

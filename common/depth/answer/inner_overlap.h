@@ -14,7 +14,7 @@ struct InnerOverlap {
   Interval depth_mm;  ///< lo is reached at point_W; hi is proven, for the meshes
   Vec3 point_W = Vec3::Zero();
   double in_either_mm = 0.0;  ///< the smaller of the two depths at point_W
-  bool grows = true;          ///< false: no point is deeper than the start, which is proven
+  bool grows = true;          ///< false: no point is deeper than the start, lazily by a share
 };
 
 /// Where the search begins: points of the overlap, and how deep the deepest of them is, at least.
